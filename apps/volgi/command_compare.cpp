@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/volgi/commands.h"
+#include "core/error.h"
+#include "core/image.h"
+#include "core/log.h"
+#include "reference/error_map.h"
+#include "reference/metrics.h"
+#include "reference/picture_files.h"
+
+namespace volgi::app {
+namespace {
+
+using AskedLight = PathTracerOptions::Light;
+
+struct CompareOptions {
+  std::filesystem::path reference;
+  std::vector<std::filesystem::path> tests;
+  std::optional<std::string> region;  // noedge where the reference has the layers for it
+  std::string light = "full";
+  bool json = false;
+  std::filesystem::path diff;
+  std::optional<double> max_rmse_percent, max_p95_percent, max_blk_percent, max_absolute;
+  std::optional<std::string> energy;
+
+  bool any_limit() const { return max_rmse_percent || max_p95_percent || max_blk_percent || max_absolute || energy; }
+};
+
+struct Range {
+  double low, high;
+};
+
+Range parse_range(const std::string& text) {
+  try {
+    size_t low_end = 0, high_end = 0;
+    const double low = std::stod(text, &low_end);
+    if (low_end < text.size() && text[low_end] == ':') {
+      const std::string rest = text.substr(low_end + 1);
+      const double high = std::stod(rest, &high_end);
+      if (high_end == rest.size() && low <= high) return {low, high};
+    }
+  } catch (const std::exception&) {  // falls through to the one message
+  }
+  throw Error(ExitCode::usage, fmt::format("--energy {} is not LOW:HIGH, such as 0.98:1.02", text));
+}
+
+AskedLight light_from_name(const std::string& name) {
+  if (name == "direct") return AskedLight::direct;
+  return name == "indirect" ? AskedLight::indirect : AskedLight::full;
+}
+
+Region region_asked_for(const CompareOptions& options, const ReferenceFile& reference) {
+  const Region region = *region_from_name(options.region.value_or("noedge"));
+  if (reference.layers || region == Region::all) return region;
+  if (options.region)
+    throw Error(ExitCode::usage,
+                fmt::format("--region {} needs position, normal, id and direct layers, which {} does not "
+                            "have: use --region all",
+                            *options.region, options.reference.string()));
+  warn_once(fmt::format("{} has no auxiliary layers: every pixel is compared", options.reference.string()));
+  return Region::all;
+}
+
+// A limit is broken by a figure above it, and by one that does not exist.
+void check_limit(std::vector<std::string>& broken, const char* name, std::optional<double> limit,
+                 std::optional<double> value) {
+  if (!limit) return;
+  if (!value || !std::isfinite(*value))
+    broken.push_back(fmt::format("{}: no figure", name));
+  else if (*value > *limit)
+    broken.push_back(fmt::format("{}: {:.6g} is over {:.6g}", name, *value, *limit));
+}
+
+std::vector<std::string> broken_limits(const CompareOptions& options, const Metrics& m) {
+  std::vector<std::string> broken;
+  if (!options.any_limit()) return broken;
+  if (m.nonfinite > 0) broken.push_back(fmt::format("{} pixels are NaN or infinite", m.nonfinite));
+  if (m.pixels == 0) return broken.push_back("no pixel in the region"), broken;
+  check_limit(broken, "--max-absolute", options.max_absolute, m.max_absolute);
+  if (!m.relative) {
+    const bool percentages =
+        options.max_rmse_percent || options.max_p95_percent || options.max_blk_percent || options.energy;
+    if (percentages && m.max_absolute > 0)
+      broken.push_back("the reference is black there and the picture is not: only --max-absolute can judge it");
+    return broken;
+  }
+  const Metrics::Relative& r = *m.relative;
+  check_limit(broken, "--max-rmse-percent", options.max_rmse_percent,
+              r.rmse_pct_denoised ? *r.rmse_pct_denoised : r.rmse_pct);
+  check_limit(broken, "--max-p95-percent", options.max_p95_percent, r.p95_percent);
+  check_limit(broken, "--max-blk-percent", options.max_blk_percent, r.blk_pct);
+  if (options.energy) {
+    const Range range = parse_range(*options.energy);
+    if (!(r.ratio >= range.low && r.ratio <= range.high))
+      broken.push_back(fmt::format("--energy: {:.6g} is outside {}", r.ratio, *options.energy));
+  }
+  return broken;
+}
+
+void put(nlohmann::ordered_json& json, const char* key, const std::optional<double>& value) {
+  if (value) json[key] = *value;
+}
+
+// Keys as compare.py has them.
+nlohmann::ordered_json to_json(const Metrics& m) {
+  nlohmann::ordered_json json{{"pixels", m.pixels}, {"nonfinite", m.nonfinite}, {"negative", m.negative}};
+  if (m.pixels == 0) return json;
+  json["ref_mean"] = m.ref_mean;
+  json["test_mean"] = m.test_mean;
+  json["test_max"] = m.test_max;
+  json["mean_absolute"] = m.mean_absolute;
+  json["max_absolute"] = m.max_absolute;
+  if (!m.relative) return json;
+  const Metrics::Relative& r = *m.relative;
+  json["ratio"] = r.ratio;
+  json["ratio_rgb"] = r.ratio_rgb;
+  json["rmse_pct"] = r.rmse_pct;
+  put(json, "rmse_pct_denoised", r.rmse_pct_denoised);
+  json["relmse"] = r.relmse;
+  put(json, "relmse_denoised", r.relmse_denoised);
+  json["p95_percent"] = r.p95_percent;
+  put(json, "blk_pct", r.blk_pct);
+  put(json, "blkmax_pct", r.blkmax_pct);
+  put(json, "blkbias_pct", r.blkbias_pct);
+  json["scale"] = r.scale;
+  json["ssim"] = r.ssim;  // null when there is no figure
+  return json;
+}
+
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string table_head() {
+  return fmt::format("{:>8} {:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>8} {:>8} {:>7} {:>10}  {}\n", "ratio", "rmse%",
+                     "rmse%*", "relMSE", "relMSE*", "p95%", "blk%", "blkmax%", "scale", "ssim", "max|t-r|", "picture");
+}
+
+std::string table_row(const Metrics& m, const std::string& name) {
+  std::string row;
+  if (m.pixels == 0)
+    row = fmt::format("no pixel in the region  {}", name);
+  else if (!m.relative)
+    row = fmt::format("reference mean 0: test mean {:.4g}, |t-r| mean {:.4g}, max {:.4g}  {}", m.test_mean,
+                      m.mean_absolute, m.max_absolute, name);
+  else {
+    const Metrics::Relative& r = *m.relative;
+    row = fmt::format("{:>8.4f} {:>8.2f} {:>8} {:>9.5f} {:>9} {:>7.2f} {:>7} {:>8} {:>8.4f} {:>7.4f} {:>10.4g}  {}",
+                      r.ratio, r.rmse_pct, cell(r.rmse_pct_denoised, 2), r.relmse, cell(r.relmse_denoised, 5),
+                      r.p95_percent, cell(r.blk_pct, 2), cell(r.blkmax_pct, 2), r.scale, r.ssim, m.max_absolute, name);
+  }
+  if (m.nonfinite + m.negative > 0) row += fmt::format("  [{} not finite, {} negative]", m.nonfinite, m.negative);
+  return row + "\n";
+}
+
+Image test_picture(const std::filesystem::path& path, const CompareOptions& options, const Image& reference) {
+  try {
+    return box_downsample(read_test(path, light_from_name(options.light)), reference.width, reference.height);
+  } catch (const Error& error) {
+    if (std::string(error.what()).find(path.string()) != std::string::npos) throw;
+    throw Error(error.code(), fmt::format("{}: {}", path.string(), error.what()));
+  }
+}
+
+int compare(const CompareOptions& options) {
+  if (options.energy) parse_range(*options.energy);
+  const ReferenceFile reference = read_reference(options.reference, light_from_name(options.light));
+  const Region region = region_asked_for(options, reference);
+  const Mask mask = reference.layers ? region_mask(region, *reference.layers) : Mask(reference.color.pixels.size(), 1);
+  nlohmann::ordered_json results = nlohmann::ordered_json::array();
+  std::string table, failures;
+  for (const std::filesystem::path& path : options.tests) {
+    const Image test = test_picture(path, options, reference.color);
+    const Metrics m = measure(reference.color, test, reference.noise ? &*reference.noise : nullptr, mask);
+    const std::vector<std::string> broken = broken_limits(options, m);
+    for (const std::string& limit : broken) failures += fmt::format("volgi compare: {}: {}\n", path.string(), limit);
+    nlohmann::ordered_json json{{"reference", options.reference.string()}, {"test", path.string()}};
+    json["light"] = options.light;
+    json["region"] = std::string(name(region));
+    json.update(to_json(m));
+    json["failed"] = broken;
+    results.push_back(json);
+    table += table_row(m, path.string());
+    if (!options.diff.empty()) write_png_display(options.diff, error_map(reference.color, test, mask));
+  }
+  if (options.json)
+    std::cout << results.dump(1) << '\n';
+  else
+    std::cout << fmt::format("light {}, region {}, reference {}\n", options.light, name(region),
+                             options.reference.string())
+              << table_head() << table;
+  std::cerr << failures;
+  return static_cast<int>(failures.empty() ? ExitCode::done : ExitCode::comparison_failed);
+}
+
+constexpr const char* kFooter =
+    R"(Figures: ratio mean(test)/mean(ref); rmse% of mean(ref); relMSE; p95% 95th percentile of the relative error;
+blk% RMS error of 16x16 block means; * with the reference's own noise taken out. A REF is an EXR of `volgi reference`,
+or DIR/full.exr with full_noise.exr, direct.exr and aov.exr beside it. Exit code 1 when a limit is broken, or a limit is
+given and a pixel is not finite.
+Example: volgi compare data/reference/ref/cornell/full.exr mine.exr --max-blk-percent 2 --energy 0.99:1.01)";
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App& command = *app.add_subcommand("compare", "How far pictures are from a reference");
+  command.add_option("REF", options->reference, "reference EXR")->required();
+  command.add_option("TEST", options->tests, "EXR pictures of REF's size or an integer multiple of it")->required();
+  command.add_option("--region", options->region, "pixels that count [noedge]")
+      ->check(CLI::IsMember({"all", "hit", "noedge", "shadow", "lit"}));
+  command
+      .add_option("--light", options->light,
+                  "light that is compared; a TEST without direct layer is that light already")
+      ->check(CLI::IsMember({"full", "direct", "indirect"}))
+      ->capture_default_str();
+  command.add_flag("--json", options->json, "print an array of objects instead of a table");
+  command.add_option("--diff", options->diff, "write a map of the signed relative error, saturated at 50 % (one TEST)");
+  command.add_option("--max-rmse-percent", options->max_rmse_percent,
+                     "limit on the noise-removed rmse [% of the mean]");
+  command.add_option("--max-p95-percent", options->max_p95_percent,
+                     "limit on the 95th percentile of the relative error [%]");
+  command.add_option("--max-blk-percent", options->max_blk_percent, "limit on the error of 16x16 block means [%]");
+  command.add_option("--max-absolute", options->max_absolute, "limit on the largest |test - ref| [W m^-2 sr^-1]");
+  command.add_option("--energy", options->energy, "limits LOW:HIGH on mean(test)/mean(ref)");
+  command.footer(kFooter);
+  command.callback([options, &exit_code] {
+    if (!options->diff.empty() && options->tests.size() > 1)
+      throw Error(ExitCode::usage, "--diff writes one map: give one TEST with it");
+    exit_code = compare(*options);
+  });
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "apps/volgi/commands.h"
+#include "apps/volgi/scene_options.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/image.h"
+#include "core/log.h"
+#include "core/scene.h"
+#include "reference/path_tracer.h"
+
+namespace volgi::app {
+namespace {
+
+struct ReferenceOptions {
+  SceneOptions scene;
+  std::filesystem::path output;
+  PathTracerOptions tracer;
+  std::optional<int> bounces;
+  std::string light = "full", filter = "point";
+  bool quiet = false;
+};
+
+// Hours of rendering must not end in a folder that cannot be written: a file beside the target, at once removed again.
+void check_writable(const std::filesystem::path& output) {
+  if (output.extension() != ".exr")
+    throw Error(ExitCode::usage, fmt::format("-o {}: a reference is an EXR file, name it *.exr", output.string()));
+  if (std::filesystem::is_directory(output))
+    throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: it is a folder", output.string()));
+  struct Unwritten {};
+  try {
+    write_atomically(output, [&](const std::filesystem::path& temporary) {
+      std::FILE* file = std::fopen(temporary.c_str(), "wb");
+      if (file == nullptr)
+        throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: no permission or no space", output.string()));
+      std::fclose(file);
+      throw Unwritten{};  // the target, if there is one, stays as it is
+    });
+  } catch (const Unwritten&) {
+  }
+}
+
+void render(const ReferenceOptions& options) {
+  set_quiet(options.quiet);
+  check_writable(options.output);
+  PathTracerOptions tracer = options.tracer;
+  tracer.size = options.scene.size();
+  tracer.max_bounces = options.bounces;
+  if (options.light == "direct") tracer.light = PathTracerOptions::Light::direct;
+  if (options.light == "indirect") tracer.light = PathTracerOptions::Light::indirect;
+  if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
+  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  const Camera camera = options.scene.camera(scene);
+  write_exr(options.output, to_channels(path_trace(scene, camera, tracer)));
+}
+
+constexpr const char* kFooter =
+    R"(Writes R,G,B [W m^-2 sr^-1]; direct; half_a, half_b, direct_half_a, direct_half_b (independent halves of the
+samples, from which `volgi compare` takes the noise); position [m], normal, albedo, id, depth [m]. With --light indirect
+the direct layer is called left_out.direct. The same bytes for any number of threads.
+Example: volgi reference data/reference/scenes/cornell.glb -o cornell.exr --size 192x192 --spp 1024)";
+
+}  // namespace
+
+void add_reference_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ReferenceOptions>();
+  CLI::App& command = *app.add_subcommand("reference", "Path-traced reference picture of a scene (Embree, CPU)");
+  options->scene.add_to(command);
+  command.add_option("-o,--output", options->output, "EXR file to write")->required();
+  command.add_option("--spp", options->tracer.samples_per_pixel, "samples per pixel, rounded up to an even number")
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  command
+      .add_option("--bounces", options->bounces, "largest number of reflections, 0 is direct light only [unlimited]")
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()));
+  command.add_option("--light", options->light, "light in R,G,B")
+      ->check(CLI::IsMember({"full", "direct", "indirect"}))
+      ->capture_default_str();
+  command.add_option("--seed", options->tracer.seed, "seed of the random numbers")->capture_default_str();
+  command
+      .add_option("--filter", options->filter,
+                  "point: pixel centres, as a rasterizer samples; box: mean over the pixel")
+      ->check(CLI::IsMember({"point", "box"}))
+      ->capture_default_str();
+  command.add_option("--threads", options->tracer.threads, "CPU threads, 0 for all; the picture does not depend on it")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command.add_flag("--quiet", options->quiet, "no progress bar, no warnings");
+  command.footer(kFooter);
+  command.callback([options, &exit_code] {
+    render(*options);
+    exit_code = static_cast<int>(ExitCode::done);
+  });
+}
+
+}  // namespace volgi::app

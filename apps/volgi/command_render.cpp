@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+
+#include "apps/volgi/commands.h"
+#include "apps/volgi/frame_options.h"
+#include "apps/volgi/frame_stats.h"
+#include "apps/volgi/scene_options.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/gl/context.h"
+#include "core/image.h"
+#include "core/log.h"
+#include "screen/image_from_texture.h"
+
+namespace volgi::app {
+
+namespace {
+
+struct RenderCommand {
+  SceneOptions scene;
+  FrameCommandOptions frame;
+  std::filesystem::path out = "out.png";
+  std::filesystem::path stats;
+  float exposure_ev = 0.0f;
+  bool half = false;
+  bool quiet = false;
+  int frames = 1;
+  std::optional<int> device;
+
+  int run() const;
+  void write_picture(const Image& picture) const;
+};
+
+void refuse_unwritable(const std::filesystem::path& target) {
+  // Seen now rather than after minutes of work; an existing file is left as it is.
+  write_atomically(target.parent_path() / ("." + target.filename().string() + ".writable"), [](const std::filesystem::path& p) { std::ofstream{p}; });
+  std::filesystem::remove(target.parent_path() / ("." + target.filename().string() + ".writable"));
+}
+
+void refuse_bad_picture(const Image& picture) {
+  for (const glm::vec3& p : picture.pixels) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      warn_once("the picture has pixels that are not finite: please report the scene and the command");
+      return;
+    }
+  }
+}
+
+void RenderCommand::write_picture(const Image& picture) const {
+  if (out.extension() == ".exr") {
+    write_exr(out, picture, half);
+  } else {
+    write_png(out, picture, exposure_ev);
+  }
+}
+
+int RenderCommand::run() const {
+  set_quiet(quiet);
+  glm::ivec2 size = scene.size();
+  screen::FrameOptions options = frame.frame_options(size);
+  if (out.extension() != ".exr" && out.extension() != ".png") {
+    throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .exr or .png");
+  }
+  refuse_unwritable(out);
+  if (!stats.empty()) refuse_unwritable(stats);
+  Scene loaded = load_scene(scene.scene_path, scene.time_s);
+  Camera camera = scene.camera(loaded);
+  gl::Context context(device);
+  if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
+
+  screen::Frame picture(loaded, options);
+  const bool timed = true;
+  gl::PassTimer timer(context.software(), timed);
+  // Two warm-up frames where times of several are wanted; one frame is shown with what it took from cold.
+  const int warm_up = frames > 1 ? 2 : 0;
+  for (int f = 0; f < warm_up + frames; ++f) {
+    if (f == warm_up) timer.reset();
+    timer.begin_frame();
+    picture.render(camera, timer);
+    timer.end_frame();
+  }
+  Image image = screen::image_from_texture(picture.radiance());
+  refuse_bad_picture(image);
+  write_picture(image);
+  auto numbers = frame_stats(loaded.name, frame.gi, size, context, timer, frames, picture.report());
+  numbers["parameters"] = {{"light", frame.light}, {"scheme", frame.scheme}, {"grid", frame.grid_cells}, {"set", frame.parameters}};
+  if (!stats.empty()) {
+    write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << numbers.dump(1) << '\n'; });
+  }
+  if (!quiet) fmt::print("{}wrote {}\n", pass_table(numbers), out.string());
+  return int(ExitCode::done);
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<RenderCommand>();
+  CLI::App* command = app.add_subcommand("render", "render a glTF scene to an EXR (linear) or PNG (tone mapped) picture");
+  options->scene.add_to(*command);
+  command->add_option("-o,--output", options->out, "picture to write, .exr or .png")->capture_default_str();
+  options->frame.add_to(*command);
+  command->add_option("--exposure", options->exposure_ev, "PNG only: stops (powers of two) before the tone map")->capture_default_str();
+  command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
+  command->add_option("--frames", options->frames, "render the same picture this often (after two warm-up frames) for times")
+      ->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--device", options->device, "number of the EGL device (the first hardware device, else software)");
+  command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->footer("Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512");
+  command->callback([options, &exit_code] { exit_code = options->run(); });
+}
+
+}  // namespace volgi::app

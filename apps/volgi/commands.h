@@ -1,0 +1,13 @@
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace volgi::app {
+
+/// Each command adds its subcommand to `app`; running it stores the exit code (core/error.h) in `exit_code`. Errors are
+/// thrown as volgi::Error and become one line on stderr in main.
+void add_render_command(CLI::App& app, int& exit_code);
+void add_reference_command(CLI::App& app, int& exit_code);
+void add_compare_command(CLI::App& app, int& exit_code);
+void add_bench_command(CLI::App& app, int& exit_code);
+
+}  // namespace volgi::app

@@ -1,0 +1,54 @@
+#include "apps/volgi/frame_stats.h"
+
+#include <fmt/format.h>
+
+namespace volgi::app {
+
+nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size, const gl::Context& context,
+                           gl::PassTimer& timer, int frames, const screen::FrameReport& report) {
+  nlohmann::json passes = nlohmann::json::array();
+  for (const auto& pass : timer.medians()) passes.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
+  auto frame = timer.frame_time();
+  auto rgb = [](glm::vec3 v) { return nlohmann::json::array({v.x, v.y, v.z}); };
+  return {
+      {"scene", scene},
+      {"mode", mode},
+      {"size", {size.x, size.y}},
+      {"device", context.device_name()},
+      {"gl_version", context.version()},
+      {"timer", timer.kind() == gl::PassTimer::Kind::gpu ? "gpu" : "wall"},
+      {"frames", frames},
+      {"frame_ms", {{"min", frame.min_ms}, {"median", frame.median_ms}, {"max", frame.max_ms}}},
+      {"passes", passes},
+      {"grid", {report.grid.x, report.grid.y, report.grid.z}},
+      {"iterations", report.bounces.passes},
+      {"orders", report.bounces.orders},
+      {"converged", report.bounces.converged},
+      {"sides", report.sides},
+      {"vpls", 0},
+      {"vals", 0},
+      {"backend", "gpu"},
+      {"memory_bytes", report.memory_bytes},
+      {"power_W", {{"injected", rgb(report.injected)}, {"sent", rgb(report.bounces.sent)}, {"left", rgb(report.bounces.left)}, {"lost", rgb(report.lost)}}},
+  };
+}
+
+std::string pass_table(const nlohmann::json& stats) {
+  std::string text;
+  double sum = 0.0;
+  for (const auto& pass : stats["passes"]) {
+    double ms = pass["gpu_ms"];
+    sum += ms;
+    text += fmt::format("  {:<38} {:9.2f} ms\n", pass["name"].get<std::string>(), ms);
+  }
+  text += fmt::format("  {:<38} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame", stats["frame_ms"]["median"].get<double>(),
+                      stats["frames"].get<int>(), sum);
+  if (stats["grid"][0] != 0) {
+    text += fmt::format("  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, {:.1f} MiB on the GPU\n", stats["grid"][0].get<int>(),
+                        stats["grid"][1].get<int>(), stats["grid"][2].get<int>(), stats["sides"].get<unsigned>(), stats["orders"].get<int>(),
+                        stats["iterations"].get<int>(), stats["memory_bytes"].get<double>() / 1048576.0);
+  }
+  return text;
+}
+
+}  // namespace volgi::app

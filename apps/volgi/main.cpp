@@ -1,0 +1,51 @@
+// volgi: the command line. Thin: options in, library calls, one line for an error, the documented exit code out.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "apps/volgi/commands.h"
+#include "core/error.h"
+#include "volgi_version.h"
+
+int main(int argc, char** argv) {
+  using namespace volgi;
+  int exit_code = int(ExitCode::done);
+  CLI::App app{"volgi: volume-based global illumination, and how wrong it is", "volgi"};
+  app.set_version_flag("--version", VOLGI_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer(
+      "Exit codes: 0 done; 1 a comparison exceeded its limit; 2 wrong usage; 3 bad input file; 4 no usable GPU or context;\n"
+      "            5 out of memory or over a limit; 6 could not write the output.\nEach command: volgi COMMAND --help");
+#ifdef VOLGI_HAS_GL
+  app::add_render_command(app, exit_code);
+#endif
+  app::add_reference_command(app, exit_code);
+  app::add_compare_command(app, exit_code);
+#ifdef VOLGI_HAS_GL
+  app::add_bench_command(app, exit_code);
+#endif
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& e) {
+    return app.exit(e);
+  } catch (const CLI::CallForAllHelp& e) {
+    return app.exit(e);
+  } catch (const CLI::CallForVersion& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
+    return int(ExitCode::usage);
+  } catch (const Error& e) {
+    std::cerr << "volgi: " << e.what() << '\n';
+    return int(e.code());
+  } catch (const std::bad_alloc&) {
+    std::cerr << "volgi: out of memory; try a smaller --grid or --size\n";
+    return int(ExitCode::over_limit);
+  } catch (const std::exception& e) {
+    std::cerr << "volgi: " << e.what() << '\n';
+    return int(ExitCode::bad_input);
+  }
+  return exit_code;
+}

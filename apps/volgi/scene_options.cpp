@@ -1,0 +1,103 @@
+#include "apps/volgi/scene_options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "core/error.h"
+#include "core/log.h"
+
+namespace volgi::app {
+namespace {
+
+constexpr int largest_edge = 16384;
+
+/// The whole text as a finite number.
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  if (!std::isfinite(double(number))) return std::nullopt;
+  return number;
+}
+
+std::vector<double> parse_point(const std::string& option, std::string_view text) {
+  std::vector<double> point;
+  for (bool more = true; more;) {
+    const size_t comma = text.find(',');
+    const auto number = parse_number<double>(text.substr(0, comma));
+    if (!number) throw CLI::ValidationError(option, "takes three numbers X,Y,Z in metres, such as 1,2.5,-3");
+    point.push_back(*number);
+    more = comma != std::string_view::npos;
+    if (more) text.remove_prefix(comma + 1);
+  }
+  if (point.size() != 3) throw CLI::ValidationError(option, "takes three numbers X,Y,Z in metres, such as 1,2.5,-3");
+  return point;
+}
+
+std::string check_finite(const std::string& text) {
+  return parse_number<double>(text) ? std::string() : fmt::format("'{}' is not a finite number", text);
+}
+
+glm::vec3 centred(const std::vector<double>& world, const Scene& scene) {
+  return glm::vec3(glm::dvec3(world[0], world[1], world[2]) - scene.world_origin);
+}
+
+}  // namespace
+
+void SceneOptions::add_to(CLI::App& command) {
+  const auto point = [&](const std::string& name, std::vector<double>& out, const std::string& help) {
+    return command
+        .add_option_function<std::string>(
+            name, [name, &out](const std::string& text) { out = parse_point(name, text); }, help)
+        ->type_name("X,Y,Z");
+  };
+  command.add_option("SCENE", scene_path, "glTF 2.0 scene (.gltf or .glb)")->required()->type_name("FILE");
+  command.add_option("--time", time_s, "Time of the file's animations [s]")->check(check_finite)->capture_default_str();
+  CLI::Option* camera =
+      command.add_option("--camera", camera_index, "Camera of the file, counted from 0")->check(CLI::NonNegativeNumber);
+  CLI::Option* from = point("--eye", eye, "Camera position in the file's frame [m]");
+  CLI::Option* to = point("--target", target, "Point that --eye looks at [m]");
+  from->needs(to)->excludes(camera);
+  to->needs(from)->excludes(camera);
+  command.add_option("--yfov", yfov_deg, "Vertical field of view of --eye [degrees]")
+      ->check(CLI::Range(0.1, 179.0))
+      ->needs(from)
+      ->capture_default_str();
+  command.add_option("--size", size_text, "Picture size in pixels")->type_name("WxH")->capture_default_str();
+}
+
+glm::ivec2 SceneOptions::size() const {
+  const std::string_view text = size_text;
+  const size_t x = text.find('x');
+  const auto width = parse_number<int>(text.substr(0, x));
+  const auto height = x == std::string_view::npos ? std::nullopt : parse_number<int>(text.substr(x + 1));
+  const auto in_range = [](std::optional<int> edge) { return edge && *edge >= 1 && *edge <= largest_edge; };
+  if (!in_range(width) || !in_range(height)) {
+    throw Error(ExitCode::usage,
+                fmt::format("--size '{}': give WxH with both from 1 to {}, such as 512x512", size_text, largest_edge));
+  }
+  return {*width, *height};
+}
+
+Camera SceneOptions::camera(const Scene& scene) const {
+  if (!eye.empty()) {
+    if (eye == target) throw Error(ExitCode::usage, "--eye and --target are the same point; move one of them");
+    const float yfov_rad = float(glm::radians(yfov_deg));
+    return look_at_camera(centred(eye, scene), centred(target, scene), yfov_rad, scene.bounds_min, scene.bounds_max);
+  }
+  const size_t count = scene.cameras.size();
+  if (camera_index) {
+    if (*camera_index >= 0 && size_t(*camera_index) < count) return scene.cameras[size_t(*camera_index)];
+    throw Error(ExitCode::usage, fmt::format("--camera {}: {} has {} camera(s), counted from 0", *camera_index,
+                                             scene.path.string(), count));
+  }
+  if (count > 0) return scene.cameras.front();
+  warn_once(fmt::format("{}: no camera; the whole scene is framed", scene.path.string()));
+  return framing_camera(scene.bounds_min, scene.bounds_max);
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,31 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/scene.h"
+
+namespace volgi::app {
+
+/// What every command that looks at a scene takes: SCENE, --time, --camera N | --eye, --target, --yfov, --size WxH.
+struct SceneOptions {
+  std::filesystem::path scene_path;
+  double time_s = 0.0;
+  std::optional<int> camera_index;
+  std::vector<double> eye, target;  // 3 numbers each, file's world frame
+  double yfov_deg = 40.0;
+  std::string size_text = "512x512";
+
+  void add_to(CLI::App& command);
+  /// @throws Error(usage) when the text is not WxH with both in 1 ... 16384.
+  glm::ivec2 size() const;
+  /// The camera asked for; the file's first one; or, with a warning, one that frames the bounds.
+  /// @throws Error(usage) for a camera that does not exist, naming how many there are.
+  Camera camera(const Scene& scene) const;
+};
+
+}  // namespace volgi::app

@@ -1,0 +1,58 @@
+#include "core/atomic_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+#include <system_error>
+
+#include "core/error.h"
+
+namespace volgi {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& target, const std::string& why) {
+  throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {}", target.string(), why));
+}
+
+/// Removes the temporary file unless it was renamed.
+struct TemporaryFile {
+  fs::path path;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!path.empty()) fs::remove(path, ignored);
+  }
+};
+
+fs::path temporary_name(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};  // two threads may write the same target
+  fs::path name = target.stem();
+  name += fmt::format(".tmp-{}-{}", getpid(), counter++);
+  name += target.extension();
+  return target.parent_path() / name;
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  std::error_code error;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (target.filename().empty()) fail(target, "no file name given");
+  if (!fs::is_directory(folder, error)) fail(target, fmt::format("there is no folder {}", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    fail(target, fmt::format("the folder {} cannot be written", folder.string()));
+  }
+  // A rename would replace a device such as /dev/null by a file.
+  const fs::file_status status = fs::status(target, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) fail(target, "it exists and is not a regular file");
+
+  TemporaryFile temporary{temporary_name(target)};
+  write(temporary.path);
+  fs::rename(temporary.path, target, error);
+  if (error) fail(target, error.message());
+  temporary.path.clear();
+}
+
+}  // namespace volgi

@@ -1,0 +1,11 @@
+# cmake -DDIR=shaders -DLIST=names.txt -DOUT=table.cpp -P embed_shaders.cmake: the files as C++ string literals.
+file(STRINGS ${LIST} names)
+set(text "// Generated from shaders/ by core/gl/embed_shaders.cmake.\n#include \"core/gl/shader_source.h\"\n\n")
+string(APPEND text "namespace volgi::gl {\n\nstd::span<const ShaderFile> shader_files() {\n")
+string(APPEND text "  static constexpr ShaderFile files[] = {\n")
+foreach(name IN LISTS names)
+  file(READ ${DIR}/${name} body)
+  string(APPEND text "      {\"${name}\", R\"__glsl(" "${body}" ")__glsl\"},\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace volgi::gl\n")
+file(WRITE ${OUT} "${text}")

@@ -1,0 +1,154 @@
+#include "core/gl/program.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <glm/gtc/type_ptr.hpp>
+#include <span>
+#include <utility>
+
+#include "core/error.h"
+#include "core/gl/objects.h"
+#include "core/gl/shader_source.h"
+
+namespace volgi::gl {
+namespace {
+
+struct Stage {
+  GLenum type;
+  std::string file;
+};
+
+void delete_shader(GLuint id) { glDeleteShader(id); }
+using Shader = Handle<delete_shader>;
+
+template <class GetParameter, class GetLog>
+std::string info_log(GLuint id, GetParameter get_parameter, GetLog get_log) {
+  GLint length = 0;
+  get_parameter(id, GL_INFO_LOG_LENGTH, &length);
+  std::string log(size_t(std::max(length, 1)), '\0');
+  get_log(id, length, nullptr, log.data());
+  log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
+  return log;
+}
+
+std::string define_lines(const std::vector<std::string>& defines) {
+  std::string text;
+  for (const std::string& define : defines) text += "#define " + define + '\n';
+  return text;
+}
+
+Shader compile(const Stage& stage, const std::string& defines) {
+  const std::string source = expand_shader(stage.file, defines);
+  Shader shader(glCreateShader(stage.type));
+  const char* text = source.c_str();
+  glShaderSource(shader.id(), 1, &text, nullptr);
+  glCompileShader(shader.id());
+  GLint compiled = 0;
+  glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
+  if (compiled == 0) {
+    throw Error(ExitCode::no_device, "the driver refuses shader " + stage.file + ": " +
+                                         info_log(shader.id(), glGetShaderiv, glGetShaderInfoLog) +
+                                         " (files: " + file_legend(source) + ")");
+  }
+  return shader;
+}
+
+GLuint link(std::span<const Stage> stages, const std::vector<std::string>& defines) {
+  const std::string define_text = define_lines(defines);
+  const GLuint program = glCreateProgram();
+  std::vector<Shader> shaders;
+  try {
+    for (const Stage& stage : stages) {
+      shaders.push_back(compile(stage, define_text));
+      glAttachShader(program, shaders.back().id());
+    }
+    glLinkProgram(program);
+    GLint linked = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked == 0) {
+      throw Error(ExitCode::no_device, "the driver refuses to link " + stages.back().file + ": " +
+                                           info_log(program, glGetProgramiv, glGetProgramInfoLog));
+    }
+  } catch (...) {
+    glDeleteProgram(program);
+    throw;
+  }
+  for (const Shader& shader : shaders) glDetachShader(program, shader.id());
+  glObjectLabel(GL_PROGRAM, program, -1, stages.back().file.c_str());
+  return program;
+}
+
+}  // namespace
+
+Program Program::compute(std::string_view file, const std::vector<std::string>& defines) {
+  const std::array stages{Stage{GL_COMPUTE_SHADER, std::string(file)}};
+  Program program;
+  program.id_ = link(stages, defines);
+  return program;
+}
+
+Program Program::raster(std::string_view base, const std::vector<std::string>& defines) {
+  const std::string name(base);
+  std::vector<Stage> stages{{GL_VERTEX_SHADER, name + ".vert.glsl"}};
+  if (has_shader_file(name + ".geom.glsl")) stages.push_back({GL_GEOMETRY_SHADER, name + ".geom.glsl"});
+  stages.push_back({GL_FRAGMENT_SHADER, name + ".frag.glsl"});
+  Program program;
+  program.id_ = link(stages, defines);
+  return program;
+}
+
+Program Program::raster(std::string_view vertex_file, std::string_view fragment_file,
+                        const std::vector<std::string>& defines) {
+  const std::array stages{Stage{GL_VERTEX_SHADER, std::string(vertex_file)},
+                          Stage{GL_FRAGMENT_SHADER, std::string(fragment_file)}};
+  Program program;
+  program.id_ = link(stages, defines);
+  return program;
+}
+
+Program::~Program() {
+  if (id_ != 0) glDeleteProgram(id_);
+}
+
+Program::Program(Program&& other) noexcept
+    : id_(std::exchange(other.id_, 0)), locations_(std::move(other.locations_)) {}
+
+Program& Program::operator=(Program&& other) noexcept {
+  std::swap(id_, other.id_);
+  std::swap(locations_, other.locations_);
+  return *this;
+}
+
+void Program::use() const { glUseProgram(id_); }
+
+GLint Program::location(const char* name) const {
+  const auto [it, added] = locations_.try_emplace(name, -1);
+  if (added) it->second = glGetUniformLocation(id_, name);
+  return it->second;
+}
+
+void Program::set(const char* name, int v) const { glProgramUniform1i(id_, location(name), v); }
+void Program::set(const char* name, GLuint v) const { glProgramUniform1ui(id_, location(name), v); }
+void Program::set(const char* name, float v) const { glProgramUniform1f(id_, location(name), v); }
+void Program::set(const char* name, glm::vec2 v) const { glProgramUniform2f(id_, location(name), v.x, v.y); }
+void Program::set(const char* name, glm::vec3 v) const { glProgramUniform3f(id_, location(name), v.x, v.y, v.z); }
+void Program::set(const char* name, glm::vec4 v) const { glProgramUniform4f(id_, location(name), v.x, v.y, v.z, v.w); }
+void Program::set(const char* name, glm::ivec2 v) const { glProgramUniform2i(id_, location(name), v.x, v.y); }
+void Program::set(const char* name, glm::ivec3 v) const { glProgramUniform3i(id_, location(name), v.x, v.y, v.z); }
+void Program::set(const char* name, const glm::mat3& v) const {
+  glProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, glm::value_ptr(v));
+}
+void Program::set(const char* name, const glm::mat4& v) const {
+  glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, glm::value_ptr(v));
+}
+
+void dispatch(glm::ivec3 size, glm::ivec3 local) {
+  assert(size.x > 0 && size.y > 0 && size.z > 0);
+  const glm::uvec3 groups = glm::uvec3((size + local - 1) / local);
+  glDispatchCompute(groups.x, groups.y, groups.z);
+}
+
+std::string shader_source(std::string_view file) { return expand_shader(file); }
+
+}  // namespace volgi::gl

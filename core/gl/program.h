@@ -1,0 +1,55 @@
+#pragma once
+#include <epoxy/gl.h>
+
+#include <glm/glm.hpp>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace volgi::gl {
+
+/// A linked program from files under shaders/ (embedded in the library at build time, so that nothing is looked up at
+/// run time). `#include "shared/x.shared.h"` is expanded with #line; `defines` become "#define A B" after #version.
+/// @throws Error(no_device) with the compiler's message and the shader's name when the driver refuses it.
+class Program {
+ public:
+  Program() = default;
+  static Program compute(std::string_view file, const std::vector<std::string>& defines = {});
+  /// BASE.vert.glsl + BASE.frag.glsl (+ BASE.geom.glsl where it exists).
+  static Program raster(std::string_view base, const std::vector<std::string>& defines = {});
+  static Program raster(std::string_view vertex_file, std::string_view fragment_file,
+                        const std::vector<std::string>& defines = {});
+  ~Program();
+  Program(Program&&) noexcept;
+  Program& operator=(Program&&) noexcept;
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const;
+  GLuint id() const { return id_; }
+  // Uniforms by name, on this program (no need to be in use). A name that the linker removed is ignored.
+  void set(const char* name, int v) const;
+  void set(const char* name, GLuint v) const;
+  void set(const char* name, float v) const;
+  void set(const char* name, glm::vec2 v) const;
+  void set(const char* name, glm::vec3 v) const;
+  void set(const char* name, glm::vec4 v) const;
+  void set(const char* name, glm::ivec2 v) const;
+  void set(const char* name, glm::ivec3 v) const;
+  void set(const char* name, const glm::mat3& v) const;
+  void set(const char* name, const glm::mat4& v) const;
+
+ private:
+  GLint location(const char* name) const;
+  GLuint id_ = 0;
+  mutable std::unordered_map<std::string, GLint> locations_;
+};
+
+/// Dispatches enough groups of `local` to cover `size`.
+void dispatch(glm::ivec3 size, glm::ivec3 local);
+
+/// The text of an embedded shader file, includes expanded (for tests and tools).
+std::string shader_source(std::string_view file);
+
+}  // namespace volgi::gl

@@ -1,0 +1,38 @@
+#include "core/gl/raster_state.h"
+
+#include <epoxy/gl.h>
+
+namespace volgi::gl {
+namespace {
+
+void begin_pass() {
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_MULTISAMPLE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+}  // namespace
+
+void begin_geometry_pass() {
+  begin_pass();
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glDepthMask(GL_TRUE);
+}
+
+void begin_fullscreen_pass(bool add) {
+  begin_pass();
+  glDisable(GL_DEPTH_TEST);
+  if (add) {
+    glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ONE);
+  } else {
+    glDisable(GL_BLEND);
+  }
+}
+
+}  // namespace volgi::gl

@@ -1,0 +1,39 @@
+#pragma once
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <deque>
+
+#include "core/gl/objects.h"
+
+namespace volgi::gl {
+
+/// Brings small results to the host without draining the GPU: push() queues a copy, pop() waits for the oldest copy
+/// only, by when later work is already queued.
+class Readback {
+ public:
+  /// @param bytes of one result; @param slots results that may be under way at once.
+  Readback(size_t bytes, size_t slots);
+  ~Readback();
+  Readback(const Readback&) = delete;
+  Readback& operator=(const Readback&) = delete;
+
+  void push(const Buffer& from, size_t offset = 0);
+  size_t pending() const { return waiting_.size(); }
+  void pop(void* out);
+  void drop_all();
+
+ private:
+  struct Waiting {
+    size_t slot;
+    GLsync fence;
+  };
+  Buffer buffer_;
+  const char* mapped_ = nullptr;
+  size_t bytes_;
+  size_t slots_;
+  size_t next_ = 0;
+  std::deque<Waiting> waiting_;
+};
+
+}  // namespace volgi::gl

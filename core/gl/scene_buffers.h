@@ -1,0 +1,45 @@
+#pragma once
+#include <map>
+#include <vector>
+
+#include "core/gl/objects.h"
+#include "core/gl/program.h"
+#include "core/scene.h"
+
+namespace volgi::gl {
+
+/// The scene on the GPU: one vertex buffer of unshared triangle corners (so that every triangle has its own geometric
+/// normal and id), materials, textures with mipmaps and samplers. Draws are grouped by material.
+/// Vertex attributes: 0 position vec3, 1 shading normal vec3, 2 uv0 vec2, 3 uv1 vec2, 4 color vec4,
+/// 5 geometric normal vec3 (unit, front side; flat), 6 object id uint (flat).
+class SceneBuffers {
+ public:
+  explicit SceneBuffers(const Scene& scene);
+
+  /// Draws everything with `program`, which must include shared/material.glsl: per material it sets the material
+  /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive). Skips meshes without triangles.
+  void draw(const Program& program) const;
+  size_t triangle_count() const;
+  size_t bytes() const;  // GPU memory
+  const std::vector<Material>& materials() const;
+
+ private:
+  struct Range {
+    int material;
+    GLint first;
+    GLsizei count;
+  };
+  void bind_material(const Program& program, int material) const;
+  void bind_use(const Program& program, GLuint unit, const TextureUse& use, bool srgb, const char* texcoord_name,
+                const char* transform_name) const;
+  std::vector<Material> materials_;
+  std::vector<Range> ranges_;
+  std::vector<Texture> textures_;  // one for each (glTF texture, srgb) pair in use
+  std::map<std::pair<int, bool>, size_t> texture_of_;
+  Buffer vertices_;
+  VertexArray vertex_array_;
+  size_t triangles_ = 0;
+  size_t texture_bytes_ = 0;
+};
+
+}  // namespace volgi::gl

@@ -1,0 +1,165 @@
+#pragma once
+// Private to core: how a glTF file becomes a Scene. Steps in the order in which scene.cpp calls them; each file checks
+// what it reads, because tinygltf checks little.
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace volgi::gltf {
+
+/// A parsed file. Its JSON has passed check_json; images hold their encoded bytes when they come from a URI.
+struct Document {
+  std::filesystem::path path;
+  tinygltf::Model model;
+};
+
+// --- gltf_error.cpp
+/// @throws Error(bad_input) "FILE: WHAT", on one line of bounded length whatever the file's names contain.
+[[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what);
+void warn(const std::filesystem::path& file, std::string_view what);
+/// "mesh 3 'wall'".
+std::string element(std::string_view kind, size_t index, const std::string& name);
+/// Refuses unless 0 <= index < size; WHO is the element that refers, KIND what it refers to.
+void check_index(const Document& document, int index, size_t size, const std::string& who, std::string_view kind);
+
+// --- gltf_json.cpp: before tinygltf sees the text
+/// Files that the JSON refers to, by the name under which tinygltf will ask for them.
+using ExternalFiles = std::map<std::string, std::filesystem::path>;
+/// Refuses nesting deeper than any scene needs, properties of a wrong type (tinygltf would use their defaults),
+/// unsupported required extensions, and URIs that are missing or leave the file's folder.
+ExternalFiles check_json(const std::filesystem::path& file, std::string_view text);
+
+// --- gltf_uri.cpp
+/// Path of a relative URI. Refuses what is absolute, leaves the folder (also through a link) or is not a regular file.
+std::filesystem::path resolve_uri(const std::filesystem::path& file, const std::string& who, const std::string& uri);
+/// tinygltf also turns '+' into a space.
+std::string tinygltf_decoded(const std::string& uri);
+
+// --- gltf_document.cpp
+Document read_document(const std::filesystem::path& path);
+
+// --- gltf_accessor.cpp
+/// Elements of an accessor as floats; normalized integers already in [-1,1] or [0,1].
+struct Elements {
+  size_t components = 0;  // per element
+  std::vector<float> values;
+  size_t count() const { return components == 0 ? 0 : values.size() / components; }
+};
+
+struct Expected {
+  std::set<size_t> components;       // 1 scalar ... 4
+  bool normalized_integers = false;  // besides floats
+  bool plain_integers = false;       // KHR_mesh_quantization
+};
+
+/// The bytes of a buffer view, checked against its buffer.
+struct Bytes {
+  const unsigned char* data = nullptr;
+  size_t size = 0;
+};
+Bytes view_bytes(const Document& document, int buffer_view, const std::string& who);
+/// Refuses an accessor that lies outside its buffer view, has a wrong type, or holds NaN or infinity.
+Elements read_elements(const Document& document, int accessor, const Expected& expected, const std::string& who);
+std::vector<std::uint32_t> read_indices(const Document& document, int accessor, const std::string& who);
+/// Refuses any accessor of the file that lies outside its data, used or not, before anything is allocated for it.
+void check_accessors(const Document& document);
+
+// --- gltf_material.cpp, gltf_texture.cpp
+struct Materials {
+  std::vector<Material> materials;  // those of the file, then the default material if a primitive needs it
+  std::vector<TextureImage> images;
+  std::vector<Texture> textures;
+};
+Materials read_materials(const Document& document);
+
+/// Scene textures made of a file's on demand: what no supported property uses is never decoded.
+class TextureTable {
+ public:
+  TextureTable(const Document& document, Materials& out);
+  TextureUse use(const tinygltf::TextureInfo& info, const std::string& who);
+
+ private:
+  int texture(int file_texture, const std::string& who);
+  int image(int file_image, const std::string& who);
+  const Document& document_;
+  Materials& out_;
+  std::vector<int> texture_of_file_, image_of_file_;
+};
+/// PNG or JPEG.
+TextureImage decode_image(const Document& document, size_t index);
+
+// --- gltf_mesh.cpp
+/// A primitive in the frame of the nodes that show it. Without normals its corners are unshared.
+struct Primitive {
+  int material = 0;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  // as in the file; empty when it has none
+  std::array<std::vector<glm::vec2>, 2> uv;
+  std::vector<glm::vec4> colors;
+  std::vector<glm::uvec3> triangles;
+};
+/// Primitives with triangles; the material of those without one is `default_material`.
+std::vector<Primitive> read_mesh(const Document& document, size_t mesh, int default_material);
+
+// --- gltf_node.cpp
+struct Node {
+  std::string name;
+  int parent = -1;
+  int mesh = -1, camera = -1, light = -1;
+  glm::dvec3 translation{0.0};
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
+  glm::dvec3 scale{1.0};
+  std::optional<glm::dmat4> matrix;  // instead of the three
+};
+std::vector<Node> read_nodes(const Document& document);
+/// Nodes of the default scene (or the first, or all roots), every parent before its children.
+std::vector<int> scene_nodes(const Document& document, const std::vector<Node>& nodes);
+/// World transforms of the nodes in `order`; refuses infinite ones.
+std::vector<glm::dmat4> world_from_nodes(const std::filesystem::path& file, const std::vector<Node>& nodes,
+                                         const std::vector<int>& order);
+
+// --- gltf_animation.cpp
+struct Channel {
+  enum class Path { translation, rotation, scale };
+  enum class Interpolation { linear, step, cubic };
+  int node = 0;
+  Path path = Path::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<float> times_s;
+  size_t components = 3;
+  std::vector<float> values;  // per key: the value, or in-tangent, value, out-tangent
+};
+std::vector<Channel> read_channels(const Document& document, const std::vector<Node>& nodes);
+void animate(std::vector<Node>& nodes, const std::vector<Channel>& channels, double time_s);
+
+// --- gltf_light_camera.cpp: as in the file, in the node's frame
+std::vector<Light> read_lights(const Document& document);
+std::vector<Camera> read_cameras(const Document& document);
+Light place_light(Light light, const glm::dmat4& world_from_node, const glm::dvec3& world_origin);
+/// @throws Error(bad_input) when the node's axes vanish. A far plane of 0 stays: infinite, for finite_far_plane().
+Camera place_camera(const std::filesystem::path& file, Camera camera, const glm::dmat4& world_from_node,
+                    const glm::dvec3& world_origin);
+void finite_far_plane(Camera& camera, glm::vec3 bounds_min, glm::vec3 bounds_max);
+
+// --- gltf_place.cpp
+struct PlacedMesh {
+  Mesh mesh;                          // without positions until the origin is known
+  std::vector<glm::dvec3> positions;  // world
+};
+/// Counter-clockwise fronts, unit normals, no triangle without area (`dropped` counts those).
+PlacedMesh place_primitive(const Primitive& primitive, const glm::dmat4& world_from_node, size_t& dropped);
+/// Positions relative to the origin; normals for what has none.
+Mesh centred(PlacedMesh placed, const glm::dvec3& world_origin, size_t& dropped);
+
+}  // namespace volgi::gltf

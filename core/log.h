@@ -1,0 +1,13 @@
+#pragma once
+#include <string_view>
+
+namespace volgi {
+
+/// Prints "volgi: warning: MESSAGE" on stderr, once for each distinct message in the life of the process.
+void warn_once(std::string_view message);
+
+/// With quiet on, warn_once and Progress print nothing.
+void set_quiet(bool quiet);
+bool is_quiet();
+
+}  // namespace volgi

@@ -1,0 +1,192 @@
+#include "core/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/gltf_internal.h"
+
+namespace volgi {
+namespace {
+
+constexpr double farthest_m = 1e12;                  // squares and cubes of it are still floats
+constexpr size_t most_vertices = size_t(100) << 20;  // of all nodes together
+
+struct Box {
+  glm::dvec3 min{std::numeric_limits<double>::infinity()};
+  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+  bool empty() const { return min.x > max.x; }
+};
+
+Box triangle_bounds(const std::vector<gltf::PlacedMesh>& meshes) {
+  Box box;
+  for (const gltf::PlacedMesh& placed : meshes) {
+    for (const glm::uvec3& t : placed.mesh.triangles) {
+      for (int c = 0; c < 3; ++c) {
+        box.min = glm::min(box.min, placed.positions[t[c]]);
+        box.max = glm::max(box.max, placed.positions[t[c]]);
+      }
+    }
+  }
+  return box;
+}
+
+}  // namespace
+
+/// What of a file does not change with time.
+struct SceneFile::Data {
+  std::filesystem::path path;
+  gltf::Materials materials;
+  std::vector<std::vector<gltf::Primitive>> meshes;  // decoded where a node of the scene shows them
+  std::vector<gltf::Node> nodes;
+  std::vector<int> order;
+  std::vector<gltf::Channel> channels;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+
+  explicit Data(const gltf::Document& document);
+  std::vector<gltf::PlacedMesh> place_meshes(const std::vector<glm::dmat4>& world, size_t& dropped) const;
+  void check_positions(const gltf::PlacedMesh& placed, const gltf::Node& node) const;
+  void add_lights_and_cameras(const std::vector<glm::dmat4>& world, Scene& scene) const;
+};
+
+SceneFile::Data::Data(const gltf::Document& document) : path(document.path) {
+  gltf::check_accessors(document);
+  nodes = gltf::read_nodes(document);
+  order = gltf::scene_nodes(document, nodes);
+  materials = gltf::read_materials(document);
+  lights = gltf::read_lights(document);
+  cameras = gltf::read_cameras(document);
+  channels = gltf::read_channels(document, nodes);
+
+  meshes.resize(document.model.meshes.size());
+  std::vector<bool> decoded(meshes.size(), false);
+  size_t vertices = 0;
+  for (const int index : order) {
+    const int mesh = nodes[size_t(index)].mesh;
+    if (mesh < 0) continue;
+    auto& primitives = meshes[size_t(mesh)];
+    if (!decoded[size_t(mesh)]) {
+      primitives = gltf::read_mesh(document, size_t(mesh), int(materials.materials.size()) - 1);
+      decoded[size_t(mesh)] = true;
+    }
+    for (const gltf::Primitive& p : primitives) vertices += p.positions.size() + p.triangles.size();
+    if (vertices > most_vertices) {
+      throw Error(ExitCode::over_limit, fmt::format("{}: more than {} vertices and triangles in all nodes together",
+                                                    path.string(), most_vertices));
+    }
+  }
+}
+
+void SceneFile::Data::check_positions(const gltf::PlacedMesh& placed, const gltf::Node& node) const {
+  for (const glm::dvec3& p : placed.positions) {
+    if (std::abs(p.x) <= farthest_m && std::abs(p.y) <= farthest_m && std::abs(p.z) <= farthest_m) continue;
+    gltf::refuse(path, fmt::format("node '{}': a vertex lies at ({}, {}, {}), beyond {} m", node.name, p.x, p.y, p.z,
+                                   farthest_m));
+  }
+}
+
+std::vector<gltf::PlacedMesh> SceneFile::Data::place_meshes(const std::vector<glm::dmat4>& world,
+                                                            size_t& dropped) const {
+  std::vector<gltf::PlacedMesh> placed;
+  for (const int index : order) {
+    const gltf::Node& node = nodes[size_t(index)];
+    if (node.mesh < 0) continue;
+    for (const gltf::Primitive& primitive : meshes[size_t(node.mesh)]) {
+      gltf::PlacedMesh& mesh = placed.emplace_back(gltf::place_primitive(primitive, world[size_t(index)], dropped));
+      check_positions(mesh, node);
+      mesh.mesh.name = node.name;
+      mesh.mesh.object_id = std::uint32_t(index) + 1;
+    }
+  }
+  return placed;
+}
+
+void SceneFile::Data::add_lights_and_cameras(const std::vector<glm::dmat4>& world, Scene& scene) const {
+  for (const int index : order) {
+    const gltf::Node& node = nodes[size_t(index)];
+    const glm::dmat4& world_from_node = world[size_t(index)];
+    if (node.light >= 0) {
+      scene.lights.push_back(gltf::place_light(lights[size_t(node.light)], world_from_node, scene.world_origin));
+      if (scene.lights.back().name.empty()) scene.lights.back().name = node.name;
+    }
+    if (node.camera >= 0) {
+      Camera camera = cameras[size_t(node.camera)];
+      if (camera.name.empty()) camera.name = node.name;
+      camera = gltf::place_camera(path, camera, world_from_node, scene.world_origin);
+      gltf::finite_far_plane(camera, scene.bounds_min, scene.bounds_max);
+      scene.cameras.push_back(camera);
+    }
+  }
+}
+
+SceneFile::SceneFile(const std::filesystem::path& path) {
+  try {
+    data_ = std::make_unique<Data>(gltf::read_document(path));
+  } catch (const std::bad_alloc&) {
+    throw Error(ExitCode::over_limit, fmt::format("{}: not enough memory to read it", path.string()));
+  }
+}
+
+SceneFile::~SceneFile() = default;
+SceneFile::SceneFile(SceneFile&&) noexcept = default;
+SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
+
+bool SceneFile::animated() const { return !data_->channels.empty(); }
+
+Scene SceneFile::at(double time_s) const {
+  assert(std::isfinite(time_s));
+  Scene scene;
+  scene.path = data_->path;
+  scene.name = data_->path.stem().string();
+  scene.materials = data_->materials.materials;
+  scene.images = data_->materials.images;
+  scene.textures = data_->materials.textures;
+
+  std::vector<gltf::Node> nodes = data_->nodes;
+  gltf::animate(nodes, data_->channels, time_s);
+  const std::vector<glm::dmat4> world = gltf::world_from_nodes(data_->path, nodes, data_->order);
+
+  size_t dropped = 0;
+  std::vector<gltf::PlacedMesh> placed = data_->place_meshes(world, dropped);
+  const Box box = triangle_bounds(placed);
+  if (!box.empty()) scene.world_origin = 0.5 * (box.min + box.max);
+  for (gltf::PlacedMesh& mesh : placed) {
+    Mesh done = gltf::centred(std::move(mesh), scene.world_origin, dropped);
+    if (!done.triangles.empty()) scene.meshes.push_back(std::move(done));
+  }
+  if (dropped > 0) gltf::warn(data_->path, fmt::format("{} triangles without area are left out", dropped));
+  update_bounds(scene);
+  data_->add_lights_and_cameras(world, scene);
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& path, double time_s) { return SceneFile(path).at(time_s); }
+
+size_t Scene::triangle_count() const {
+  size_t count = 0;
+  for (const Mesh& mesh : meshes) count += mesh.triangles.size();
+  return count;
+}
+
+void update_bounds(Scene& scene) {
+  glm::vec3 low(std::numeric_limits<float>::infinity());
+  glm::vec3 high = -low;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const glm::uvec3& t : mesh.triangles) {
+      for (int c = 0; c < 3; ++c) {
+        low = glm::min(low, mesh.positions[t[c]]);
+        high = glm::max(high, mesh.positions[t[c]]);
+      }
+    }
+  }
+  const bool empty = low.x > high.x;
+  scene.bounds_min = empty ? glm::vec3(0.0f) : low;
+  scene.bounds_max = empty ? glm::vec3(0.0f) : high;
+}
+
+}  // namespace volgi

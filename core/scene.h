@@ -1,0 +1,132 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+
+namespace volgi {
+
+/// 8-bit RGBA as stored in the file (sRGB encoded where the use is colour), row 0 first as glTF has it (v = 0).
+struct TextureImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;
+};
+
+enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };
+
+struct Sampler {
+  Wrap wrap_s = Wrap::repeat;
+  Wrap wrap_t = Wrap::repeat;
+  bool magnify_nearest = false;
+  bool minify_nearest = false;   // nearest within a level
+  bool mipmap = true;            // any of the *_MIPMAP_* modes, or no mode given
+  bool mipmap_nearest = false;
+};
+
+struct Texture {
+  int image = -1;
+  Sampler sampler;
+};
+
+/// Use of a texture by a material. uv = uv_from_texcoord * (texcoord, 1): KHR_texture_transform, identity without it.
+struct TextureUse {
+  int texture = -1;   // index into Scene::textures, -1 for none
+  int texcoord = 0;   // 0 or 1
+  glm::mat3 uv_from_texcoord{1.0f};
+};
+
+enum class AlphaMode { opaque, mask, blend };
+
+struct Material {
+  std::string name;
+  glm::vec4 base_color_factor{1.0f};
+  TextureUse base_color;            // sRGB
+  float metallic_factor = 1.0f;     // glTF's default
+  TextureUse metallic;              // linear, blue channel
+  glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
+  TextureUse emissive;              // sRGB
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;        // matters for emission only: every triangle blocks and reflects on both sides
+
+  bool is_emissive() const { return emissive_radiance != glm::vec3(0.0f); }
+};
+
+/// One glTF primitive of one node, already in the scene's centred world frame. Indexed triangle list.
+/// normals has the size of positions; uv[0], uv[1], colors are empty when the file has none.
+/// Winding: the front face is counter-clockwise seen from outside, also under mirroring node transforms.
+struct Mesh {
+  std::string name;
+  int material = 0;
+  std::uint32_t object_id = 0;      // 1 + index of the glTF node; pixels without geometry have id 0
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;   // unit length
+  std::array<std::vector<glm::vec2>, 2> uv;
+  std::vector<glm::vec4> colors;    // linear COLOR_0
+  std::vector<glm::uvec3> triangles;
+};
+
+/// Punctual light (KHR_lights_punctual), in the centred frame. Units: conventions, "Radiometry".
+struct Light {
+  enum class Type { point, spot, directional };
+  std::string name;
+  Type type = Type::point;
+  glm::vec3 position{0.0f};
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  // unit, the way light travels
+  glm::vec3 intensity{0.0f};               // color · intensity: radiant intensity [W/sr], or irradiance for a sun
+  float inner_cone_rad = 0.0f;
+  float outer_cone_rad = 0.785398163f;
+  float range_m = 0.0f;                    // 0: unlimited
+};
+
+/// A scene at one instant: world-space triangles, materials, lights, cameras. Everything in float is relative to
+/// `world_origin`, which was subtracted in double.
+struct Scene {
+  std::string name;                  // file stem
+  std::filesystem::path path;
+  glm::dvec3 world_origin{0.0};
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;   // never empty: meshes without one use a default material
+  std::vector<TextureImage> images;
+  std::vector<Texture> textures;
+  std::vector<Light> lights;
+  std::vector<Camera> cameras;
+  glm::vec3 bounds_min{0.0f};        // of all triangles; both zero when there are none
+  glm::vec3 bounds_max{0.0f};
+
+  size_t triangle_count() const;
+};
+
+/// A glTF file in memory, from which the scene at any time is made.
+/// @throws Error(bad_input) naming file and element: not glTF, truncated, missing buffer or image, an unknown required
+///   extension, indices out of range, NaN or infinite vertices, cyclic nodes, a path that leaves the file's folder.
+/// Ignored optional features (normal maps, skins, morph targets, unknown extensions) are warned about once.
+class SceneFile {
+ public:
+  explicit SceneFile(const std::filesystem::path& path);
+  ~SceneFile();
+  SceneFile(SceneFile&&) noexcept;
+  SceneFile& operator=(SceneFile&&) noexcept;
+
+  /// The scene with node animations sampled at `time_s` (first animation's clamp-to-ends; none: the rest pose).
+  Scene at(double time_s) const;
+  bool animated() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// SceneFile(path).at(time_s).
+Scene load_scene(const std::filesystem::path& path, double time_s = 0.0);
+
+/// Recomputes bounds_min and bounds_max from the meshes (for scenes built in code).
+void update_bounds(Scene& scene);
+
+}  // namespace volgi

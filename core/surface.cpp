@@ -1,0 +1,146 @@
+#include "core/surface.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/image.h"
+
+namespace volgi {
+namespace {
+
+const std::array<float, 256>& decoded_srgb() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> t{};
+    for (size_t i = 0; i < t.size(); ++i) t[i] = srgb_decode(float(i) / 255.0f);
+    return t;
+  }();
+  return table;
+}
+
+glm::vec4 texel(const TextureImage& image, int x, int y, bool srgb) {
+  const std::uint8_t* p = &image.rgba[4 * (size_t(y) * size_t(image.width) + size_t(x))];
+  const float alpha = float(p[3]) / 255.0f;
+  if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  const auto& decode = decoded_srgb();
+  return {decode[p[0]], decode[p[1]], decode[p[2]], alpha};
+}
+
+/// Coordinate in [0,1] of one period, so that huge ones cannot overflow an int. NaN becomes 0.
+float wrapped(float u, Wrap wrap) {
+  if (!std::isfinite(u)) return 0.0f;
+  if (wrap == Wrap::clamp_to_edge) return std::clamp(u, 0.0f, 1.0f);
+  if (wrap == Wrap::repeat) return u - std::floor(u);
+  const float t = u - 2.0f * std::floor(0.5f * u);
+  return t > 1.0f ? 2.0f - t : t;
+}
+
+/// Neighbour outside the image: a mirrored one is the edge itself.
+int wrapped_texel(int i, int size, Wrap wrap) {
+  if (wrap == Wrap::repeat) return (i + size) % size;
+  return std::clamp(i, 0, size - 1);
+}
+
+template <typename T>
+T interpolate(const std::vector<T>& values, glm::uvec3 corners, glm::vec3 weights) {
+  return weights.x * values[corners.x] + weights.y * values[corners.y] + weights.z * values[corners.z];
+}
+
+struct Corners {
+  glm::uvec3 indices;
+  glm::vec3 weights;
+};
+
+glm::vec4 sample_use(const Scene& scene, const Mesh& mesh, const TextureUse& use, const Corners& at, bool srgb) {
+  if (use.texture < 0) return glm::vec4(1.0f);
+  const auto& texcoords = mesh.uv[size_t(use.texcoord)];
+  const glm::vec2 texcoord = texcoords.empty() ? glm::vec2(0.0f) : interpolate(texcoords, at.indices, at.weights);
+  return sample_texture(scene, use.texture, glm::vec2(use.uv_from_texcoord * glm::vec3(texcoord, 1.0f)), srgb);
+}
+
+float alpha_of(const Material& material, float alpha) {
+  if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
+  if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+  return std::clamp(alpha, 0.0f, 1.0f);
+}
+
+/// Largest (or, for the metal, smallest) value of a texture, per channel.
+glm::vec4 texture_extreme(const Scene& scene, const TextureUse& use, bool srgb, bool largest) {
+  if (use.texture < 0) return glm::vec4(1.0f);
+  const TextureImage& image = scene.images[size_t(scene.textures[size_t(use.texture)].image)];
+  std::array<std::uint8_t, 4> extreme{};
+  extreme.fill(largest ? 0 : 255);
+  for (size_t i = 0; i < image.rgba.size(); ++i) {
+    std::uint8_t& e = extreme[i % 4];
+    e = largest ? std::max(e, image.rgba[i]) : std::min(e, image.rgba[i]);
+  }
+  return texel(TextureImage{1, 1, {extreme.begin(), extreme.end()}}, 0, 0, srgb);
+}
+
+}  // namespace
+
+glm::vec4 sample_texture(const Scene& scene, int texture, glm::vec2 uv, bool srgb) {
+  const Texture& t = scene.textures[size_t(texture)];
+  const TextureImage& image = scene.images[size_t(t.image)];
+  const float x = wrapped(uv.x, t.sampler.wrap_s) * float(image.width);
+  const float y = wrapped(uv.y, t.sampler.wrap_t) * float(image.height);
+  if (t.sampler.magnify_nearest) {
+    return texel(image, std::min(int(x), image.width - 1), std::min(int(y), image.height - 1), srgb);
+  }
+  const glm::vec2 corner(std::floor(x - 0.5f), std::floor(y - 0.5f));
+  const glm::vec2 share(x - 0.5f - corner.x, y - 0.5f - corner.y);
+  const int x0 = wrapped_texel(int(corner.x), image.width, t.sampler.wrap_s);
+  const int x1 = wrapped_texel(int(corner.x) + 1, image.width, t.sampler.wrap_s);
+  const int y0 = wrapped_texel(int(corner.y), image.height, t.sampler.wrap_t);
+  const int y1 = wrapped_texel(int(corner.y) + 1, image.height, t.sampler.wrap_t);
+  const glm::vec4 top = glm::mix(texel(image, x0, y0, srgb), texel(image, x1, y0, srgb), share.x);
+  const glm::vec4 bottom = glm::mix(texel(image, x0, y1, srgb), texel(image, x1, y1, srgb), share.x);
+  return glm::mix(top, bottom, share.y);
+}
+
+SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {
+  const Corners at{mesh.triangles[triangle], glm::vec3(1.0f - u - v, u, v)};
+  const Material& material = scene.materials[size_t(mesh.material)];
+  SurfacePoint point{};
+  point.position = interpolate(mesh.positions, at.indices, at.weights);
+
+  const glm::dvec3 a(mesh.positions[at.indices.x]);
+  const glm::dvec3 cross =
+      glm::cross(glm::dvec3(mesh.positions[at.indices.y]) - a, glm::dvec3(mesh.positions[at.indices.z]) - a);
+  const double twice_area = glm::length(cross);
+  if (twice_area > 0.0) point.geometric_normal = glm::vec3(cross / twice_area);
+  const glm::vec3 normal = interpolate(mesh.normals, at.indices, at.weights);
+  const float normal_length = glm::length(normal);
+  point.shading_normal = normal_length > 0.0f ? normal / normal_length : point.geometric_normal;
+  if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f) point.shading_normal = -point.shading_normal;
+
+  glm::vec4 base = material.base_color_factor * sample_use(scene, mesh, material.base_color, at, true);
+  if (!mesh.colors.empty()) base *= interpolate(mesh.colors, at.indices, at.weights);
+  const float metallic = material.metallic_factor * sample_use(scene, mesh, material.metallic, at, false).z;
+  point.albedo = glm::clamp(glm::vec3(base) * (1.0f - metallic), 0.0f, 1.0f);
+  point.alpha = alpha_of(material, base.w);
+  if (material.is_emissive()) {
+    point.emission = material.emissive_radiance * glm::vec3(sample_use(scene, mesh, material.emissive, at, true));
+  }
+  return point;
+}
+
+float largest_albedo(const Scene& scene) {
+  std::vector<glm::vec3> of_material;
+  of_material.reserve(scene.materials.size());
+  for (const Material& m : scene.materials) {
+    const float least_metallic = m.metallic_factor * texture_extreme(scene, m.metallic, false, false).z;
+    const glm::vec3 texture_maximum(texture_extreme(scene, m.base_color, true, true));
+    of_material.push_back(glm::vec3(m.base_color_factor) * texture_maximum * (1.0f - least_metallic));
+  }
+  float largest = 0.0f;
+  for (const Mesh& mesh : scene.meshes) {
+    glm::vec3 color(mesh.colors.empty() ? 1.0f : 0.0f);
+    for (const glm::vec4& c : mesh.colors) color = glm::max(color, glm::vec3(c));
+    const glm::vec3 albedo = of_material[size_t(mesh.material)] * color;
+    largest = std::max({largest, albedo.x, albedo.y, albedo.z});
+  }
+  return std::clamp(largest, 0.0f, 1.0f);
+}
+
+}  // namespace volgi

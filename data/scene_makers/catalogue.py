@@ -1,0 +1,36 @@
+"""All scenes: who makes each, how many triangles it must have, how its reference is rendered."""
+from dataclasses import dataclass
+from typing import Callable
+
+from . import arena, atrium, room, small
+
+
+@dataclass(frozen=True)
+class Entry:
+    make: Callable          # () or (albedo=) -> glb.Scene, or the file's bytes
+    triangles: tuple        # least and most allowed
+    spp: int                # of the committed reference
+    albedo: float = None    # default of --albedo, for scenes that have one
+    committed: bool = True  # False: made by the build
+    cycles: str = None      # images of an unrelated renderer
+
+
+def _exactly(n):
+    return (n, n)
+
+
+SCENES = {
+    'cornell': Entry(small.reference_copy('cornell'), _exactly(30), 4096, cycles='data/reference/ref/cornell'),
+    'thin_wall': Entry(small.reference_copy('thin_wall'), _exactly(42), 4096, cycles='data/reference/ref/thin_wall'),
+    'room': Entry(small.reference_copy('room'), _exactly(192), 4096, cycles='data/reference/ref/room'),
+    'room704': Entry(room.room704, _exactly(704), 4096),
+    'convex_box': Entry(small.convex_box, _exactly(10), 4096),
+    'closed_box': Entry(small.closed_box, _exactly(60), 4096, albedo=0.7),
+    'furnace': Entry(small.furnace, _exactly(12), 256, albedo=0.5),
+    'occluder': Entry(small.occluder, _exactly(22), 4096),
+    'corridor': Entry(small.corridor, (26, 60), 4096),
+    'emissive': Entry(small.emissive, (1400, 1800), 4096),
+    'arena': Entry(arena.arena, (9500, 10500), 1024, committed=False),
+    'atrium': Entry(atrium.atrium, (65000, 67000), 1024, committed=False),
+    'atrium_detail': Entry(lambda: atrium.atrium(detail=True), (97000, 99000), 1024, committed=False),
+}

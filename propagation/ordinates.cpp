@@ -1,0 +1,45 @@
+#include "propagation/ordinates.h"
+
+#include <algorithm>
+#include <glm/gtc/constants.hpp>
+#include <string>
+
+#include "core/error.h"
+
+namespace volgi {
+
+namespace {
+
+void add_permutations(OrdinateSet& set, float a, float b, float octant_share_each) {
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 d(b);
+    d[axis] = a;
+    set.directions.push_back(glm::normalize(d));
+    set.weights.push_back(octant_share_each * 0.5f * glm::pi<float>());
+  }
+}
+
+}  // namespace
+
+OrdinateSet ordinate_set(int directions) {
+  OrdinateSet set;
+  switch (directions) {
+    case 8:
+      set.directions = {glm::normalize(glm::vec3(1.0f))};
+      set.weights = {0.5f * glm::pi<float>()};
+      break;
+    case 24: add_permutations(set, 0.267f, 0.682f, 1.0f / 3.0f); break;
+    case 48:
+      add_permutations(set, 0.9261808f, 0.2666355f, 0.1761263f);
+      add_permutations(set, 0.2666355f, 0.6815076f, 0.1572070f);
+      break;
+    default:
+      throw Error(ExitCode::usage, "no set of " + std::to_string(directions) + " directions; there are 8, 24 and 48");
+  }
+  for (size_t i = 0; i < set.directions.size(); ++i) set.t += 4.0f * set.weights[i] * set.directions[i].x;
+  return set;
+}
+
+int directions_for_grid(glm::ivec3 cells) { return std::max({cells.x, cells.y, cells.z}) <= 16 ? 24 : 48; }
+
+}  // namespace volgi

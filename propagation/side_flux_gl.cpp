@@ -1,0 +1,77 @@
+#include "propagation/side_flux_gl.h"
+
+#include <algorithm>
+
+namespace volgi {
+
+SideFluxGl::SideFluxGl()
+    : inject_emitters_(gl::Program::compute("propagation/inject_emitters.comp.glsl")),
+      collect_(gl::Program::compute("propagation/collect_flux.comp.glsl")),
+      fixed_lost_(4 * sizeof(std::uint32_t)),
+      lost_(sizeof(glm::vec4)) {
+  fixed_lost_.clear();
+}
+
+void SideFluxGl::begin(const VoxelGridGl& voxels) {
+  if (capacity_ != voxels.side_capacity) {
+    capacity_ = voxels.side_capacity;
+    emitted_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
+    punctual_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
+    fixed_ = gl::Buffer(3 * sizeof(std::uint32_t) * size_t(capacity_));
+    fixed_.clear();
+  }
+  emitted_.clear();
+  punctual_.clear();
+  lost_.clear();
+}
+
+void SideFluxGl::begin_source(const VoxelGridGl& voxels, const gl::Program& program, float source_power) {
+  // 2^30 units: the sum of all deposits stays below 2^32 although each is rounded.
+  flux_unit_ = std::max(source_power, 1e-30f) / 1073741824.0f;
+  voxels.bind();
+  fixed_.bind_storage(12);
+  fixed_lost_.bind_storage(13);
+  program.set("flux_unit", flux_unit_);
+}
+
+void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  voxels.bind();
+  fixed_.bind_storage(12);
+  fixed_lost_.bind_storage(13);
+  into.bind_storage(9);
+  lost_.bind_storage(11);
+  collect_.use();
+  collect_.set("flux_unit", flux_unit_);
+  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces, gl::PassTimer& timer) {
+  if (pieces.empty()) return;
+  auto scope = timer.scope("propagation/inject_emitters");
+  std::vector<glm::vec4> packed;
+  packed.reserve(3 * pieces.size());
+  glm::dvec3 total(0.0);
+  for (const FluxSample& p : pieces) {
+    packed.emplace_back(p.position, 0.0f);
+    packed.emplace_back(p.normal, 0.0f);
+    packed.emplace_back(p.flux, 0.0f);
+    total += glm::dvec3(p.flux);
+  }
+  pieces_ = gl::Buffer(packed);
+  begin_source(voxels, inject_emitters_, float(std::max({total.x, total.y, total.z})));
+  pieces_.bind_storage(14);
+  inject_emitters_.use();
+  inject_emitters_.set("piece_count", int(pieces.size()));
+  gl::dispatch({int(pieces.size()), 1, 1}, {64, 1, 1});
+  collect(voxels, emitted_);
+}
+
+glm::vec3 SideFluxGl::lost() const { return glm::vec3(lost_.download<glm::vec4>(1)[0]); }
+
+size_t SideFluxGl::bytes() const {
+  return emitted_.bytes() + punctual_.bytes() + fixed_.bytes() + fixed_lost_.bytes() + lost_.bytes() + pieces_.bytes();
+}
+
+}  // namespace volgi

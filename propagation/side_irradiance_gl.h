@@ -1,0 +1,26 @@
+#pragma once
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "propagation/bounces_gl.h"
+
+namespace volgi {
+
+/// Irradiance per side [W m^-2] from the power that sides have received, timer "propagation/side_irradiance": conventions'
+/// E = (P/A - (s-1) B0) / (1 + (s-1) rho), then the area-weighted mean over the sides with normals within 45 degrees in
+/// the 3^3 cells around that can be reached without crossing a surface, then clamped at zero.
+class SideIrradianceGl {
+ public:
+  SideIrradianceGl();
+  void run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces, gl::PassTimer& timer);
+
+  const gl::Buffer& direct() const { return direct_; }      // emission's first arrival; vec4 a side
+  const gl::Buffer& indirect() const { return indirect_; }  // everything after
+  size_t bytes() const;
+
+ private:
+  gl::Program side_irradiance_, smooth_;
+  gl::Buffer raw_direct_, raw_indirect_, direct_, indirect_;
+  std::uint32_t capacity_ = 0;
+};
+
+}  // namespace volgi

@@ -1,0 +1,22 @@
+#pragma once
+#include "propagation/bounce_rules.h"
+#include "voxel/voxel_grid_gl.h"
+
+namespace volgi {
+
+/// A scheme: the operator that carries the power which sides send through the grid until sides receive it or it leaves.
+class TransportGl {
+ public:
+  virtual ~TransportGl() = default;
+  /// One order.
+  /// @param sent      power per side (vec4, rgb) [W], >= 0.
+  /// @param received  power per side (vec4, rgb) [W], added to.
+  /// @param report    passes, and power that was left in flight, are added.
+  virtual void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received, const BounceRules& rules,
+                     BounceReport& report) = 0;
+  /// Whether an order takes a number of passes that rules.iterations can set.
+  virtual bool iterative() const = 0;
+  virtual size_t bytes() const = 0;
+};
+
+}  // namespace volgi

@@ -1,0 +1,12 @@
+#pragma once
+#include "reference/metrics.h"
+
+namespace volgi {
+
+/// Signed relative error (test - ref) / (ref + 0.1·mean of ref), channels averaged, as display values: white where
+/// equal, red where the test is too bright, blue where too dark, saturated at ±50 %; pixels outside the mask are
+/// dimmed, those that are not finite magenta. Enlarged to at least 256 pixels a side, with a colour bar and legend
+/// underneath.
+Image error_map(const Image& ref, const Image& test, const Mask& mask);
+
+}  // namespace volgi

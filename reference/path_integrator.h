@@ -1,0 +1,69 @@
+#pragma once
+#include <glm/glm.hpp>
+#include <limits>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/scene.h"
+#include "core/surface.h"
+#include "core/visibility/embree_scene.h"
+#include "reference/emitters.h"
+#include "reference/sampler.h"
+#include "shaders/shared/light.shared.h"
+
+namespace volgi {
+
+/// A surface as a path meets it: normals turned to the side that the path came from.
+struct PathVertex {
+  TriangleIndex triangle;
+  SurfacePoint surface;        // normals as stored, to the front
+  glm::vec3 geometric_normal;  // decides which side light is on
+  glm::vec3 shading_normal;    // cosines
+  glm::vec3 start;             // rays leave from here (EmbreeScene::leaving_point)
+  glm::vec3 emission;          // radiance towards where the path came from
+  float distance = 0.0f;       // [m] from the previous vertex
+};
+
+/// Radiance along a camera ray, apart as --light has it.
+struct PathRadiance {
+  glm::vec3 direct{0.0f};
+  glm::vec3 indirect{0.0f};
+};
+
+/// Light along paths through a scene (which must outlive it). Lambertian on both sides of every triangle. Each vertex
+/// gathers punctual lights by shadow rays, and emissive triangles by sampling their area and by the next ray of the
+/// path, weighted by the power heuristic (Veach 1997 §9.2.2). Thread-safe.
+///
+/// Where shading and geometric normal disagree, light must be on the viewer's side of both: none leaks through, and
+/// what the hemisphere around the shading normal sends into the surface is absorbed.
+class PathIntegrator {
+ public:
+  static constexpr int unlimited = std::numeric_limits<int>::max();
+
+  explicit PathIntegrator(const Scene& scene);
+
+  bool first_vertex(const CameraRay& ray, std::uint32_t alpha_seed, PathVertex& vertex) const;
+  /// All light that reaches the camera from `first`, after at most `max_bounces` reflections between it and the light.
+  PathRadiance trace(const PathVertex& first, PathSampler& sampler, int max_bounces) const;
+  /// True when a ray may pass a surface by chance, so that the first hit differs between samples.
+  bool has_blending() const { return has_blending_; }
+
+ private:
+  bool next_vertex(const Ray& ray, PathVertex& vertex) const;
+  glm::vec3 punctual_light(const PathVertex& vertex, const shared::PunctualLight& light, glm::vec3& to_light,
+                           float& distance) const;
+  bool visible(const PathVertex& vertex, glm::vec3 to_light, float distance, std::uint32_t alpha_seed) const;
+  glm::vec3 all_punctual(const PathVertex& vertex, PathSampler& sampler) const;
+  glm::vec3 one_punctual(const PathVertex& vertex, PathSampler& sampler) const;
+  glm::vec3 emitters(const PathVertex& vertex, PathSampler& sampler) const;
+  glm::vec3 gather(const PathVertex& vertex, bool first, PathSampler& sampler) const;
+  float emitter_weight(const PathVertex& hit, glm::vec3 direction, float pdf_direction) const;
+
+  const Scene* scene_;
+  EmbreeScene rays_;
+  Emitters emitters_;
+  std::vector<shared::PunctualLight> lights_;
+  bool has_blending_ = false;
+};
+
+}  // namespace volgi

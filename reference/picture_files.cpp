@@ -1,0 +1,129 @@
+#include "reference/picture_files.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/error.h"
+
+namespace volgi {
+namespace {
+
+namespace fs = std::filesystem;
+using AskedLight = PathTracerOptions::Light;
+
+Image difference(const Image& a, const Image& b, float scale = 1.0f) {
+  Image out = a;
+  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = scale * (a.pixels[i] - b.pixels[i]);
+  return out;
+}
+
+void require_same_size(const Image& a, const fs::path& path, const Image& b, const fs::path& other) {
+  if (a.width == b.width && a.height == b.height) return;
+  throw Error(ExitCode::bad_input, fmt::format("{} is {}x{} but {} beside it is {}x{}: they must be of one size",
+                                               path.string(), a.width, a.height, other.string(), b.width, b.height));
+}
+
+const std::vector<float>& plane(const ChannelImage& image, const fs::path& path, std::string_view channel) {
+  const Channel* found = image.find(channel);
+  if (found == nullptr) throw Error(ExitCode::bad_input, fmt::format("{} has no channel '{}'", path.string(), channel));
+  return found->values;
+}
+
+Image layer(const ChannelImage& image, const fs::path& path, std::string_view prefix) {
+  Image out;
+  if (!image.rgb(prefix, out))
+    throw Error(ExitCode::bad_input, fmt::format("{} has no layer '{}'", path.string(), prefix));
+  return out;
+}
+
+std::optional<Image> half_difference(const ChannelImage& image, std::string_view a, std::string_view b) {
+  Image half_a, half_b;
+  if (!image.rgb(a, half_a) || !image.rgb(b, half_b)) return std::nullopt;
+  return difference(half_a, half_b, 0.5f);
+}
+
+std::optional<Image> difference(const std::optional<Image>& a, const std::optional<Image>& b) {
+  if (!a || !b) return std::nullopt;
+  return difference(*a, *b);
+}
+
+// R,G,B and noise of the light asked for, from those of the picture and of its direct light.
+struct ColorAndNoise {
+  Image color;
+  std::optional<Image> noise;
+};
+ColorAndNoise select(AskedLight light, ColorAndNoise picture, ColorAndNoise direct) {
+  if (light == AskedLight::full) return picture;
+  if (light == AskedLight::direct) return direct;
+  return {difference(picture.color, direct.color), difference(picture.noise, direct.noise)};
+}
+
+bool is_own_reference(const ChannelImage& image) {
+  return image.find("position.X") != nullptr && image.find("half_a.R") != nullptr;
+}
+
+ReferenceFile from_own(const ChannelImage& image, const fs::path& path, AskedLight light) {
+  const bool without_direct = image.find("left_out.direct.R") != nullptr;
+  ColorAndNoise picture{layer(image, path, ""), half_difference(image, "half_a.", "half_b.")};
+  ColorAndNoise direct{layer(image, path, without_direct ? "left_out.direct." : "direct."),
+                       half_difference(image, "direct_half_a.", "direct_half_b.")};
+  RegionLayers layers{layer(image, path, "position."), layer(image, path, "normal."), direct.color,
+                      plane(image, path, "id"), plane(image, path, "depth")};
+  if (without_direct && light == AskedLight::indirect) light = AskedLight::full;
+  ColorAndNoise selected = select(light, std::move(picture), std::move(direct));
+  return {std::move(selected.color), std::move(selected.noise), std::move(layers)};
+}
+
+ColorAndNoise read_with_noise(const fs::path& path) {
+  ColorAndNoise out{read_exr_rgb(path), std::nullopt};
+  const fs::path noise = path.parent_path() / (path.stem().string() + "_noise.exr");
+  if (!fs::exists(noise)) return out;
+  out.noise = read_exr_rgb(noise);
+  require_same_size(*out.noise, noise, out.color, path);
+  return out;
+}
+
+std::optional<RegionLayers> blender_layers(const fs::path& path, const Image& direct) {
+  const fs::path aov_path = path.parent_path() / "aov.exr";
+  if (!fs::exists(aov_path)) return std::nullopt;
+  const ChannelImage aov = read_exr(aov_path);
+  RegionLayers layers{layer(aov, aov_path, "Position."), layer(aov, aov_path, "Normal."), direct,
+                      plane(aov, aov_path, "IndexOB.X"), plane(aov, aov_path, "Depth.Z")};
+  require_same_size(layers.position, aov_path, direct, path);
+  return layers;
+}
+
+ReferenceFile from_folder(const fs::path& path, AskedLight light) {
+  const fs::path direct_path = path.parent_path() / "direct.exr";
+  ColorAndNoise picture = read_with_noise(path);
+  if (!fs::exists(direct_path)) {
+    if (light == AskedLight::full) return {std::move(picture.color), std::move(picture.noise), std::nullopt};
+    throw Error(ExitCode::bad_input, fmt::format("{} has no direct layer, and there is no {}: compare --light full",
+                                                 path.string(), direct_path.string()));
+  }
+  ColorAndNoise direct = read_with_noise(direct_path);
+  require_same_size(direct.color, direct_path, picture.color, path);
+  std::optional<RegionLayers> layers = blender_layers(path, direct.color);
+  ColorAndNoise selected = select(light, std::move(picture), std::move(direct));
+  return {std::move(selected.color), std::move(selected.noise), std::move(layers)};
+}
+
+}  // namespace
+
+ReferenceFile read_reference(const fs::path& path, AskedLight light) {
+  const ChannelImage image = read_exr(path);
+  return is_own_reference(image) ? from_own(image, path, light) : from_folder(path, light);
+}
+
+Image read_test(const fs::path& path, AskedLight light) {
+  Image color = read_exr_rgb(path);
+  if (light == AskedLight::full) return color;
+  const ChannelImage image = read_exr(path);
+  Image direct;
+  if (light == AskedLight::direct && image.rgb("left_out.direct.", direct)) return direct;
+  if (!image.rgb("direct.", direct)) return color;
+  return light == AskedLight::direct ? direct : difference(color, direct);
+}
+
+}  // namespace volgi

@@ -1,0 +1,28 @@
+#pragma once
+
+namespace volgi::screen {
+
+/// Who computes which part of every light path, so that a composed picture counts each exactly once. Punctual light's
+/// direct part is always the screen's (pass "screen/direct"), and so is emission seen by the camera.
+struct BounceBudget {
+  enum class Carrier { nobody, volume };
+  Carrier emission_arrival = Carrier::nobody;  // light straight from emissive surfaces: bounce 0, direct
+  Carrier first_bounce = Carrier::nobody;
+  Carrier higher_bounces = Carrier::nobody;
+};
+
+/// Techniques that --gi can name.
+enum class GiMode { none, volume };
+
+inline BounceBudget bounce_budget(GiMode mode) {
+  using Carrier = BounceBudget::Carrier;
+  switch (mode) {
+    case GiMode::none:
+      return {Carrier::nobody, Carrier::nobody, Carrier::nobody};
+    case GiMode::volume:
+      return {Carrier::volume, Carrier::volume, Carrier::volume};
+  }
+  return {};
+}
+
+}  // namespace volgi::screen

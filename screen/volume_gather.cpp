@@ -1,0 +1,32 @@
+#include "screen/volume_gather.h"
+
+#include <array>
+
+#include "core/gl/raster_state.h"
+
+namespace volgi::screen {
+
+VolumeGather::VolumeGather(glm::ivec2 size)
+    : direct_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
+      indirect_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
+      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/volume_gather.frag.glsl")) {
+  std::array<gl::Framebuffer::Attachment, 2> colors{{{&direct_}, {&indirect_}}};
+  framebuffer_ = gl::Framebuffer(colors, {}, size);
+}
+
+void VolumeGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, const SideIrradianceGl& irradiance,
+                       gl::PassTimer& timer) {
+  auto scope = timer.scope(name);
+  gl::begin_fullscreen_pass();
+  framebuffer_.bind();
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  gbuffer.albedo().bind(2);
+  voxels.bind();
+  irradiance.direct().bind_storage(6);
+  irradiance.indirect().bind_storage(7);
+  program_.use();
+  gl::draw_fullscreen_triangle();
+}
+
+}  // namespace volgi::screen

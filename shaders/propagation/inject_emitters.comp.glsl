@@ -1,0 +1,24 @@
+#version 450 core
+// Deposits the light that pieces of emissive surfaces send (voxel/emitter_pieces.h).
+#include "propagation/deposit.glsl"
+
+struct Piece {
+  vec4 position;
+  vec4 normal;
+  vec4 flux;
+};
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 14) readonly buffer Pieces { Piece pieces[]; };
+uniform int piece_count;
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= piece_count) return;
+  ivec3 targets;
+  vec3 weights;
+  sides_of_point(pieces[i].position.xyz, pieces[i].normal.xyz, targets, weights);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (weights[axis] > 0.0) add_flux(targets[axis], weights[axis] * pieces[i].flux.rgb);
+  }
+}

@@ -1,0 +1,23 @@
+#version 450 core
+// Irradiance per side from what it has received, before smoothing: times its area, so that means can be weighted.
+#include "shared/side.shared.h"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+layout(std430, binding = 6) readonly buffer TotalDirect { vec4 total_direct[]; };      // first arrival of emission
+layout(std430, binding = 7) readonly buffer TotalIndirect { vec4 total_indirect[]; };  // everything after
+layout(std430, binding = 8) readonly buffer EmittedFlux { vec4 emitted_flux[]; };
+layout(std430, binding = 9) readonly buffer PunctualFlux { vec4 punctual_flux[]; };
+layout(std430, binding = 10) writeonly buffer Direct { vec4 direct[]; };      // rgb: E * A [W], a: A [m^2]
+layout(std430, binding = 11) writeonly buffer Indirect { vec4 indirect[]; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= side_count) return;
+  Side side = sides[i];
+  vec3 first = side_irradiance(total_direct[i].rgb, emitted_flux[i].rgb, side.albedo, side.area_m2, side.staircase);
+  vec3 rest = side_irradiance(total_indirect[i].rgb, punctual_flux[i].rgb, side.albedo, side.area_m2, side.staircase);
+  direct[i] = vec4(first * side.area_m2, side.area_m2);
+  indirect[i] = vec4(rest * side.area_m2, side.area_m2);
+}

@@ -1,0 +1,41 @@
+#version 450 core
+// Single sides of tilted surfaces carry staircase noise of tens of percent: the irradiance that pixels see is the
+// area-weighted mean over the sides with like normals in the 3^3 cells around, clamped at zero afterwards (conventions).
+#include "shared/grid.shared.h"
+#include "shared/side.shared.h"
+
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
+layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+layout(std430, binding = 10) readonly buffer Direct { vec4 direct[]; };
+layout(std430, binding = 11) readonly buffer Indirect { vec4 indirect[]; };
+layout(std430, binding = 6) writeonly buffer DirectIrradiance { vec4 direct_irradiance[]; };    // [W m^-2]
+layout(std430, binding = 7) writeonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
+
+#include "propagation/neighbourhood.glsl"
+
+const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= side_count) return;
+  ivec3 centre = cell_coord(grid, sides[i].cell);
+  vec3 normal = sides[i].normal;
+  uint reached = reachable_cells(centre);
+  vec4 direct_sum = vec4(0.0);
+  vec4 indirect_sum = vec4(0.0);
+  for (int k = 0; k < 27; ++k) {
+    if (((reached >> k) & 1u) == 0u) continue;
+    uvec2 own_sides = cell_sides[cell_index(grid, centre + ivec3(k % 3 - 1, (k / 3) % 3 - 1, k / 9 - 1))];
+    uint count = count_bits(own_sides.y & 63u);
+    for (uint s = own_sides.x; s < own_sides.x + count; ++s) {
+      if (dot(sides[s].normal, normal) < LIKE_NORMALS) continue;
+      direct_sum += direct[s];
+      indirect_sum += indirect[s];
+    }
+  }
+  direct_irradiance[i] = vec4(max(direct_sum.rgb, vec3(0.0)) / direct_sum.a, 1.0);
+  indirect_irradiance[i] = vec4(max(indirect_sum.rgb, vec3(0.0)) / indirect_sum.a, 1.0);
+}

@@ -1,0 +1,14 @@
+#version 450 core
+// Sum of the radiance layers that are asked for; black where there is no geometry.
+layout(binding = 0) uniform sampler2D position_map;
+layout(binding = 1) uniform sampler2D layers[8];
+uniform int layer_count;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  radiance = vec4(0.0, 0.0, 0.0, 1.0);
+  if (texelFetch(position_map, pixel, 0).w == 0.0) return;
+  for (int i = 0; i < layer_count; ++i) radiance.rgb += texelFetch(layers[i], pixel, 0).rgb;
+}

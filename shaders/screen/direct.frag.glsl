@@ -1,0 +1,27 @@
+#version 450 core
+// Light of one punctual light that reaches the viewer after one reflection: albedo / pi * E * visibility. Lights are
+// added by blending.
+#include "shared/reflective_shadow_map.glsl"
+
+layout(binding = 0) uniform sampler2D position_map;
+layout(binding = 1) uniform sampler2D normal_map;
+layout(binding = 2) uniform sampler2D albedo_map;
+uniform int light;
+
+layout(location = 0) out vec4 radiance;
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(position_map, pixel, 0);
+  if (position.w == 0.0) discard;
+  vec4 normals = texelFetch(normal_map, pixel, 0);
+  vec3 to_light;
+  vec3 irradiance = perpendicular_irradiance(rsm_lights[light].light, position.xyz, to_light);
+  float cosine = dot(octahedral_decode(normals.xy), to_light);
+  vec3 geometric_normal = octahedral_decode(normals.zw);
+  // The light must be on the side of the triangle that the viewer sees.
+  if (cosine <= 0.0 || dot(geometric_normal, to_light) <= 0.0 || irradiance == vec3(0.0)) discard;
+  irradiance *= cosine * rsm_visibility(light, position.xyz, geometric_normal);
+  const float pi = 3.14159265358979;
+  radiance = vec4(texelFetch(albedo_map, pixel, 0).rgb / pi * irradiance, 1.0);
+}

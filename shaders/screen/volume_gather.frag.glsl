@@ -1,0 +1,82 @@
+#version 450 core
+// Irradiance of every pixel from the sides of the cells in front of its surface: trilinear over the eight cells around a
+// point half a cell in front of it, sides with like normals only, and only of cells that lie on the pixel's side of their
+// own surfaces, so that neither the surface nor the room behind it lights it. docs/theory.md#reconstruction.
+#include "shared/grid.shared.h"
+#include "shared/side.shared.h"
+#include "shared/octahedral.glsl"
+
+layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
+layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(std430, binding = 6) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
+layout(std430, binding = 7) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
+layout(binding = 0) uniform sampler2D position_map;
+layout(binding = 1) uniform sampler2D normal_map;
+layout(binding = 2) uniform sampler2D albedo_map;
+
+layout(location = 0) out vec4 direct_radiance;    // first arrival of emission, reflected to the viewer
+layout(location = 1) out vec4 indirect_radiance;
+
+struct Gathered {
+  vec3 direct;
+  vec3 indirect;
+  float weight;
+};
+
+// Sides of one cell. `point` (cell units) must lie in front of every surface that the cell sees.
+void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool check_plane, float weight, inout Gathered g) {
+  if (!cell_inside(grid, cell)) return;
+  uvec2 own_sides = cell_sides[cell_index(grid, cell)];
+  uint count = count_bits(own_sides.y & 63u);
+  Gathered here = Gathered(vec3(0.0), vec3(0.0), 0.0);
+  for (uint s = own_sides.x; s < own_sides.x + count; ++s) {
+    vec3 side_normal = sides[s].normal;
+    vec3 on_surface = vec3(cell) + 0.5;
+    on_surface[sides[s].face >> 1] = sides[s].depth;
+    if (check_plane && dot(point - on_surface, side_normal) < -1e-3) return;
+    if (dot(side_normal, normal) < least_cosine) continue;
+    float w = weight * sides[s].area_m2;
+    here.direct += w * direct_irradiance[s].rgb;
+    here.indirect += w * indirect_irradiance[s].rgb;
+    here.weight += w;
+  }
+  g.direct += here.direct;
+  g.indirect += here.indirect;
+  g.weight += here.weight;
+}
+
+Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_plane, int reach) {
+  Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
+  vec3 low = floor(point - 0.5);
+  vec3 t = point - 0.5 - low;
+  for (int z = -reach; z <= 1 + reach; ++z) {
+    for (int y = -reach; y <= 1 + reach; ++y) {
+      for (int x = -reach; x <= 1 + reach; ++x) {
+        vec3 d = abs(vec3(x, y, z) - t);
+        vec3 w = max(vec3(1.0 + float(reach)) - d, vec3(0.0));
+        gather_cell(ivec3(low) + ivec3(x, y, z), point, normal, least_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
+      }
+    }
+  }
+  return g;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 position = texelFetch(position_map, pixel, 0);
+  direct_radiance = vec4(0.0);
+  indirect_radiance = vec4(0.0);
+  if (position.w == 0.0) return;
+  vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).zw);  // geometric
+  vec3 point = cell_from_world(grid, position.xyz) + 0.5 * normal;
+  // Strict first; a surface too thin or too tilted for the grid to show takes what is nearest, then what faces alike.
+  Gathered g = gather_around(point, normal, 0.70710678, true, 0);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1);
+  if (g.weight == 0.0) return;
+  vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / 3.14159265;
+  direct_radiance = vec4(reflectance * g.direct / g.weight, 1.0);
+  indirect_radiance = vec4(reflectance * g.indirect / g.weight, 1.0);
+}

@@ -1,0 +1,76 @@
+// The volume's frame and every index formula of it, in inverse pairs (round trip: tests/voxel/grid_test.cpp).
+#ifndef VOLGI_GRID_SHARED_H
+#define VOLGI_GRID_SHARED_H
+#include "shared/base.shared.h"
+SHARED_BEGIN
+
+// Cell (i,j,k) has its centre at origin + h (i+1/2, j+1/2, k+1/2). std430/std140: 32 bytes.
+struct Grid {
+  ivec3 cells;
+  float cell_size_m;  // h
+  vec3 origin;        // lowest corner, centred world frame
+  float pad;
+};
+#ifdef __cplusplus
+static_assert(sizeof(Grid) == 32 && offsetof(Grid, cell_size_m) == 12 && offsetof(Grid, origin) == 16);
+#endif
+
+// Faces of a cell: 0 -x, 1 +x, 2 -y, 3 +y, 4 -z, 5 +z.
+SHARED_FUNCTION int face_of(int axis, bool positive) { return 2 * axis + (positive ? 1 : 0); }
+SHARED_FUNCTION int face_axis(int face) { return face >> 1; }
+SHARED_FUNCTION int face_sign(int face) { return (face & 1) * 2 - 1; }
+SHARED_FUNCTION int opposite_face(int face) { return face ^ 1; }
+SHARED_FUNCTION ivec3 face_step(int face) {
+  ivec3 step = ivec3(0, 0, 0);
+  step[face >> 1] = (face & 1) * 2 - 1;
+  return step;
+}
+
+SHARED_FUNCTION bool cell_inside(Grid grid, ivec3 c) {
+  return c.x >= 0 && c.y >= 0 && c.z >= 0 && c.x < grid.cells.x && c.y < grid.cells.y && c.z < grid.cells.z;
+}
+
+// Cell <-> offset, x fastest.
+SHARED_FUNCTION int cell_index(Grid grid, ivec3 c) { return c.x + grid.cells.x * (c.y + grid.cells.y * c.z); }
+SHARED_FUNCTION ivec3 cell_coord(Grid grid, int index) {
+  int row = index / grid.cells.x;
+  return ivec3(index - row * grid.cells.x, row % grid.cells.y, row / grid.cells.y);
+}
+
+// World <-> cell units (cell (i,j,k) spans [i,i+1) x [j,j+1) x [k,k+1)).
+SHARED_FUNCTION vec3 cell_from_world(Grid grid, vec3 world) { return (world - grid.origin) / grid.cell_size_m; }
+SHARED_FUNCTION vec3 world_from_cell(Grid grid, vec3 cell) { return grid.origin + cell * grid.cell_size_m; }
+
+// Face i of the column (b,c) along `axis` lies between the cells i-1 and i, i in 0 ... cells[axis]; (b,c) are the
+// coordinates on the axes axis+1 and axis+2 (cyclic). Faces of one axis <-> offset, column fastest.
+SHARED_FUNCTION int axis_b(int axis) { return axis == 2 ? 0 : axis + 1; }
+SHARED_FUNCTION int axis_c(int axis) { return axis == 0 ? 2 : axis - 1; }
+SHARED_FUNCTION int face_count(Grid grid, int axis) {
+  return (grid.cells[axis] + 1) * grid.cells[axis_b(axis)] * grid.cells[axis_c(axis)];
+}
+SHARED_FUNCTION int face_index(Grid grid, int axis, ivec3 face_cell) {  // face_cell[axis] = i
+  int b = axis_b(axis);
+  int c = axis_c(axis);
+  return face_cell[b] + grid.cells[b] * (face_cell[c] + grid.cells[c] * face_cell[axis]);
+}
+SHARED_FUNCTION ivec3 face_coord(Grid grid, int axis, int index) {
+  int b = axis_b(axis);
+  int c = axis_c(axis);
+  int row = index / grid.cells[b];
+  ivec3 face_cell = ivec3(0, 0, 0);
+  face_cell[b] = index - row * grid.cells[b];
+  face_cell[c] = row % grid.cells[c];
+  face_cell[axis] = row / grid.cells[c];
+  return face_cell;
+}
+
+// Which face a surface at depth `x` (cell units along the axis) blocks: the segment between two cell centres that x lies
+// between. Depths within 2^-14 cells of a centre are snapped first, so that a wall exactly through cell centres falls
+// on one side of all of them whatever the rounding of its columns.
+SHARED_FUNCTION int face_of_depth(float x) {
+  float snapped = floor(x * 8192.0f + 0.5f) / 8192.0f;
+  return int(floor(snapped + 0.5f));
+}
+
+SHARED_END
+#endif

@@ -1,0 +1,61 @@
+// Punctual lights: what C++ uploads, and their irradiance. KHR_lights_punctual; conventions.md "Radiometry".
+#ifndef VOLGI_LIGHT_SHARED_H
+#define VOLGI_LIGHT_SHARED_H
+#include "shared/base.shared.h"
+SHARED_BEGIN
+
+#define LIGHT_POINT 0
+#define LIGHT_SPOT 1
+#define LIGHT_DIRECTIONAL 2
+
+// std430, 64 bytes.
+struct PunctualLight {
+  vec3 position;
+  int type;
+  vec3 direction;      // unit, the way light travels
+  float range_m;       // 0: unlimited
+  vec3 intensity;      // W/sr, or W/m^2 for a directional light
+  float spot_scale;    // glTF: 1 / max(0.001, cos inner - cos outer)
+  float spot_offset;   // -cos outer * spot_scale
+  float cos_outer;
+  float pad0;
+  float pad1;
+};
+#ifdef __cplusplus
+static_assert(sizeof(PunctualLight) == 64 && offsetof(PunctualLight, intensity) == 32);
+#endif
+
+// Share of the on-axis intensity that a spot sends along `from_light` (unit).
+SHARED_FUNCTION float spot_falloff(PunctualLight light, vec3 from_light) {
+  float t = clamp(dot(light.direction, from_light) * light.spot_scale + light.spot_offset, 0.0f, 1.0f);
+  return t * t;
+}
+
+// Window of KHR_lights_punctual: 1 without a range, 0 from `range` on.
+SHARED_FUNCTION float range_window(PunctualLight light, float distance) {
+  if (light.range_m <= 0.0f) return 1.0f;
+  float q = distance / light.range_m;
+  return clamp(1.0f - q * q * q * q, 0.0f, 1.0f);
+}
+
+// Irradiance at `position` on a surface that faces the light (E without its cosine); to_light is unit.
+SHARED_FUNCTION vec3 perpendicular_irradiance(PunctualLight light, vec3 position,
+#ifdef __cplusplus
+                                              vec3& to_light
+#else
+                                              out vec3 to_light
+#endif
+) {
+  if (light.type == LIGHT_DIRECTIONAL) {
+    to_light = -light.direction;
+    return light.intensity;
+  }
+  vec3 d = light.position - position;
+  float distance = length(d);
+  to_light = d / max(distance, 1e-30f);
+  float falloff = light.type == LIGHT_SPOT ? spot_falloff(light, -to_light) : 1.0f;
+  return light.intensity * (falloff * range_window(light, distance) / max(distance * distance, 1e-30f));
+}
+
+SHARED_END
+#endif

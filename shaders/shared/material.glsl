@@ -1,0 +1,80 @@
+// A material as core/gl/scene_buffers.cpp binds it, and what a surface point is made of. CPU twin: core/surface.cpp.
+// A shader without screen derivatives (compute) defines MATERIAL_LOD to the mipmap level that it wants.
+#ifndef VOLGI_MATERIAL_GLSL
+#define VOLGI_MATERIAL_GLSL
+
+#define MATERIAL_OPAQUE 0
+#define MATERIAL_MASK 1
+#define MATERIAL_BLEND 2
+
+uniform vec4 material_base_color_factor;
+uniform float material_metallic_factor;
+uniform vec3 material_emissive_radiance;  // W m^-2 sr^-1
+uniform int material_alpha_mode;
+uniform float material_alpha_cutoff;
+uniform int material_double_sided;  // emission on both sides
+
+// Texture coordinate set 0 or 1, or -1 where the material has no such texture.
+uniform int material_base_color_texcoord;
+uniform int material_metallic_texcoord;
+uniform int material_emissive_texcoord;
+uniform mat3 material_base_color_transform;
+uniform mat3 material_metallic_transform;
+uniform mat3 material_emissive_transform;
+
+layout(binding = 0) uniform sampler2D material_base_color_texture;  // sRGB: decoded by the sampler
+layout(binding = 1) uniform sampler2D material_metallic_texture;
+layout(binding = 2) uniform sampler2D material_emissive_texture;
+
+vec4 material_fetch(sampler2D image, int texcoord, mat3 transform, vec2 uv0, vec2 uv1) {
+  if (texcoord < 0) return vec4(1.0);
+  vec2 uv = (transform * vec3(texcoord == 0 ? uv0 : uv1, 1.0)).xy;
+#ifdef MATERIAL_LOD
+  return textureLod(image, uv, MATERIAL_LOD);
+#else
+  return texture(image, uv);
+#endif
+}
+
+// Diffuse albedo (baseColor * COLOR_0 * (1 - metallic), linear), and the alpha of the texture, untested.
+vec4 material_albedo_alpha(vec2 uv0, vec2 uv1, vec4 color) {
+  vec4 base = material_base_color_factor * color *
+              material_fetch(material_base_color_texture, material_base_color_texcoord, material_base_color_transform,
+                             uv0, uv1);
+  float metallic = material_metallic_factor * material_fetch(material_metallic_texture, material_metallic_texcoord,
+                                                             material_metallic_transform, uv0, uv1).b;
+  return vec4(clamp(base.rgb * (1.0 - metallic), 0.0, 1.0), base.a);
+}
+
+// Radiance that the front side sends (both sides where material_double_sided).
+vec3 material_emission(vec2 uv0, vec2 uv1) {
+  return material_emissive_radiance * material_fetch(material_emissive_texture, material_emissive_texcoord,
+                                                     material_emissive_transform, uv0, uv1).rgb;
+}
+
+// Share of light that the surface stops: 1 when opaque, 0 or 1 for MASK, alpha for BLEND. For voxels.
+float material_coverage(float alpha) {
+  if (material_alpha_mode == MATERIAL_OPAQUE) return 1.0;
+  if (material_alpha_mode == MATERIAL_MASK) return alpha >= material_alpha_cutoff ? 1.0 : 0.0;
+  return clamp(alpha, 0.0, 1.0);
+}
+
+// PCG3D (Jarzynski and Olano 2020, "Hash functions for GPU rendering"), first component in [0, 1).
+float material_hash(uvec3 v) {
+  v = v * 1664525u + 1013904223u;
+  v.x += v.y * v.z;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v ^= v >> 16u;
+  v.x += v.y * v.z;
+  return float(v.x >> 8u) * (1.0 / 16777216.0);
+}
+
+// Whether a raster or shadow pass keeps the fragment. BLEND is kept with probability alpha, by a hash of `seed`: the
+// pixel, and a number of the triangle so that surfaces behind one another decide independently.
+bool material_keeps(float alpha, uvec3 seed) {
+  float coverage = material_coverage(alpha);
+  return coverage >= 1.0 || material_hash(seed) < coverage;
+}
+
+#endif

@@ -1,0 +1,77 @@
+// Reads reflective shadow maps as screen/reflective_shadow_map.cpp binds them: the data of all lights, the textures of
+// one. `light` must be the light whose textures are bound.
+#ifndef VOLGI_REFLECTIVE_SHADOW_MAP_GLSL
+#define VOLGI_REFLECTIVE_SHADOW_MAP_GLSL
+#include "shared/octahedral.glsl"
+#include "shared/reflective_shadow_map.shared.h"
+
+layout(std430, binding = 1) readonly buffer RsmLights { ReflectiveShadowLight rsm_lights[]; };
+layout(std430, binding = 2) readonly buffer RsmLayers { ReflectiveShadowLayer rsm_layers[]; };
+layout(binding = 12) uniform sampler2DArray rsm_depth;
+layout(binding = 13) uniform sampler2DArray rsm_normal;  // geometric, octahedral, on the light's side
+layout(binding = 14) uniform sampler2DArray rsm_albedo;
+
+// What the light sees through one texel: position on the surface, geometric normal on the light's side, power that
+// arrives there [W] (0 outside a spot's cone), albedo.
+// @return false when nothing is there, or when another layer counts it.
+bool rsm_texel(int light, int layer, ivec2 texel, out vec3 position, out vec3 normal_towards_light,
+               out vec3 irradiance_flux, out vec3 albedo) {
+  ReflectiveShadowLight l = rsm_lights[light];
+  float depth = texelFetch(rsm_depth, ivec3(texel, layer), 0).r;
+  if (depth <= 0.0 || !rsm_texel_counts(l.layer_count, l.resolution, texel.x, texel.y)) return false;
+  ReflectiveShadowLayer view = rsm_layers[l.first_layer + layer];
+  vec2 uv = (vec2(texel) + 0.5) * (2.0 / float(l.resolution)) - 1.0;
+  position = rsm_position_from_uvz(view, vec3(uv, rsm_z_from_depth(view, depth)));
+  normal_towards_light = octahedral_decode(texelFetch(rsm_normal, ivec3(texel, layer), 0).rg);
+  albedo = texelFetch(rsm_albedo, ivec3(texel, layer), 0).rgb;
+  vec3 radiant = l.light.intensity;  // towards the texel [W/sr]; directional: [W/m^2]
+  if (l.light.type != LIGHT_DIRECTIONAL) {
+    vec3 from_light = position - l.light.position;
+    float distance = length(from_light);
+    radiant *= range_window(l.light, distance);
+    if (l.light.type == LIGHT_SPOT) radiant *= spot_falloff(l.light, from_light / max(distance, 1e-30));
+  }
+  irradiance_flux = radiant * rsm_texel_measure(view, l.resolution, uv.x, uv.y);
+  return any(greaterThan(irradiance_flux, vec3(0.0)));
+}
+
+// Whether the surface in a texel hides `position` from the light. It does when it lies on the light's side of the
+// receiver's plane, and the receiver lies behind the occluder's plane. Points of one plane fail both tests, facets of a
+// convex surface the first and of a concave one the second, so that no bias is needed beyond what the numbers err:
+// rasterizers place vertices to 1/256 of a texel, normals are rounded, and so are positions and depths (2^-20 allows
+// for the interpolation of depth, 2^-23 alone is not reached).
+bool rsm_texel_hides(ReflectiveShadowLayer view, int resolution, ivec3 texel, vec3 position, vec3 normal) {
+  float depth = texelFetch(rsm_depth, texel, 0).r;
+  if (depth <= 0.0) return false;
+  float z = rsm_z_from_depth(view, depth);
+  vec2 uv = (vec2(texel.xy) + 0.5) * (2.0 / float(resolution)) - 1.0;
+  vec3 occluder = rsm_position_from_uvz(view, vec3(uv, z));
+  vec3 occluder_normal = octahedral_decode(texelFetch(rsm_normal, texel, 0).rg);
+  vec3 d = occluder - position;
+  float range = view.directional != 0 ? view.depth_scale_m : z;
+  float error = rsm_texel_size_m(view, resolution, z) / 256.0 + (range + length(position)) / 1048576.0 +
+                length(d) * OCTAHEDRAL_ERROR_RAD;
+  return dot(d, normal) > error && dot(d, occluder_normal) > error;
+}
+
+// Share of the light that reaches `position`, between the four nearest texels. `normal` is the receiver's geometric one
+// on the side that the light shines on.
+float rsm_visibility(int light, vec3 position, vec3 normal) {
+  ReflectiveShadowLight l = rsm_lights[light];
+  int layer = rsm_layer_of_direction(l.layer_count, position - l.light.position);
+  ReflectiveShadowLayer view = rsm_layers[l.first_layer + layer];
+  vec2 uv = rsm_uvz_from_position(view, position).xy;
+  vec2 at = (uv * 0.5 + 0.5) * float(l.resolution) - 0.5;
+  ivec2 first = ivec2(floor(at));
+  vec2 t = at - vec2(first);
+  float visible = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 corner = ivec2(k & 1, k >> 1);
+    ivec2 texel = clamp(first + corner, ivec2(0), ivec2(l.resolution - 1));
+    vec2 w = mix(1.0 - t, t, vec2(corner));
+    if (!rsm_texel_hides(view, l.resolution, ivec3(texel, layer), position, normal)) visible += w.x * w.y;
+  }
+  return visible;
+}
+
+#endif

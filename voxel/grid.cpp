@@ -1,0 +1,37 @@
+#include "voxel/grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace volgi {
+
+Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells) {
+  if (cells_along_longest_axis < 1) throw Error(ExitCode::usage, "--grid needs at least 1 cell");
+  if (scene.triangle_count() == 0) {
+    throw Error(ExitCode::bad_input, scene.path.string() + ": no triangles, nothing to voxelize (use --gi none)");
+  }
+  glm::dvec3 extent = glm::dvec3(scene.bounds_max) - glm::dvec3(scene.bounds_min);
+  double longest = std::max({extent.x, extent.y, extent.z});
+  if (!(longest > 0.0)) throw Error(ExitCode::bad_input, scene.path.string() + ": all vertices in one point, nothing to voxelize");
+  double h = longest / cells_along_longest_axis;
+  glm::dvec3 centre = 0.5 * (glm::dvec3(scene.bounds_max) + glm::dvec3(scene.bounds_min));
+  Grid grid{};
+  grid.cell_size_m = float(h);
+  for (int axis = 0; axis < 3; ++axis) {
+    // A box of 2.0000001 cells has 2: the excess is rounding, and lies within the half cell that outer faces look beyond.
+    int cells = std::max(1, int(std::ceil(extent[axis] / h - 1e-4)));
+    double origin = centre[axis] - 0.5 * h * cells;
+    double shift = shift_cells[axis];
+    if (shift != 0.0) {
+      ++cells;
+      origin += h * (shift > 0.0 ? shift - 1.0 : shift);
+    }
+    grid.cells[axis] = cells;
+    grid.origin[axis] = float(origin);
+  }
+  return grid;
+}
+
+}  // namespace volgi

@@ -1,0 +1,20 @@
+#pragma once
+#include <glm/glm.hpp>
+
+#include "core/scene.h"
+#include "shaders/shared/grid.shared.h"
+
+namespace volgi {
+
+using shared::Grid;
+
+/// N cubic cells along the longest axis of the scene's bounds, as many as needed along the others (rounded up, at least
+/// one), box centred in the grid, no padding (conventions, "Space").
+/// @param shift_cells  moves the grid by that part of a cell on each axis and adds one cell where it is not zero, so
+///                     that the bounds stay inside: for tests of what must not depend on the grid's place.
+/// @throws Error(usage) when N < 1; Error(bad_input) when the scene has no triangles.
+Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells = glm::vec3(0.0f));
+
+inline size_t cell_count(const Grid& g) { return size_t(g.cells.x) * size_t(g.cells.y) * size_t(g.cells.z); }
+
+}  // namespace volgi
