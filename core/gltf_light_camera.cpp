@@ -106,7 +106,8 @@ Camera place_camera(const std::filesystem::path& file, Camera camera, const glm:
   const glm::dvec3 scale(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
   const glm::dvec3 back = axes[2] / scale.z;
   glm::dvec3 up = axes[1] - back * glm::dot(back, axes[1]);
-  if (!(scale.y > 0.0 && scale.z > 0.0) || !(glm::length(up) > 1e-9 * scale.y)) {
+  constexpr double smallest = 1e-12;
+  if (!(scale.y > smallest && scale.z > smallest) || !(glm::length(up) > 1e-9 * scale.y)) {
     refuse(file, fmt::format("camera '{}': its node's scale is zero", camera.name));
   }
   up = glm::normalize(up);

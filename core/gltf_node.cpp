@@ -9,6 +9,8 @@
 namespace volgi::gltf {
 namespace {
 
+constexpr double largest_entry = 1e15;  // of a world transform: its square is still a float
+
 void check_length(const Document& document, const std::vector<double>& values, size_t length, const std::string& who,
                   std::string_view property) {
   if (values.empty() || values.size() == length) return;
@@ -143,8 +145,9 @@ std::vector<glm::dmat4> world_from_nodes(const std::filesystem::path& file, cons
     m = parent_from_node(node);
     if (node.parent >= 0) m = world[size_t(node.parent)] * m;
     for (int i = 0; i < 16; ++i) {
-      if (std::isfinite(m[i / 4][i % 4])) continue;
-      refuse(file, fmt::format("{}: its transform is not finite", element("node", size_t(index), node.name)));
+      if (std::abs(m[i / 4][i % 4]) <= largest_entry) continue;  // false for NaN
+      refuse(file, fmt::format("{}: its transform is not finite or beyond {}",
+                               element("node", size_t(index), node.name), largest_entry));
     }
   }
   return world;

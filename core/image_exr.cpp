@@ -15,6 +15,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -92,9 +93,13 @@ void write_channels(const std::filesystem::path& path, const ChannelImage& image
       frame.insert(channel.name, slice_of(Imf::FLOAT, channel.values.data(), sizeof(float), header.dataWindow()));
     }
   }
-  Imf::OutputFile file(path.c_str(), header);
-  file.setFrameBuffer(frame);
-  file.writePixels(image.height);
+  {
+    Imf::OutputFile file(path.c_str(), header);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  }
+  // The destructor writes the table of lines and swallows what goes wrong, such as a full disk.
+  if (!Imf::InputFile(path.c_str()).isComplete()) throw std::runtime_error("the file is incomplete (disk full?)");
 }
 
 void add_three(ChannelImage& to, std::string_view prefix, const char* suffixes, const Image& image) {

@@ -114,7 +114,9 @@ class SceneFile {
   SceneFile(SceneFile&&) noexcept;
   SceneFile& operator=(SceneFile&&) noexcept;
 
-  /// The scene with node animations sampled at `time_s` (first animation's clamp-to-ends; none: the rest pose).
+  /// The scene with the node animations of all the file's animations at `time_s`, held before their first and after
+  /// their last key (none: the rest pose). Cost: copies geometry and images.
+  /// @throws Error(bad_input) when the transforms of that time are not finite.
   Scene at(double time_s) const;
   bool animated() const;
 

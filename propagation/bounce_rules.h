@@ -4,12 +4,13 @@
 
 namespace volgi {
 
-/// When the solver stops: its rules apart from where it runs (conventions; techniques, "Transport operator and orders").
+/// When the solver stops: its rules apart from where it runs (conventions; techniques, "Transport operator and
+/// orders").
 struct BounceRules {
   /// Reflections to carry: N orders for punctual light, N+1 for emission, whose arrival is bounce 0. None: all of them.
   std::optional<int> bounces;
-  /// Passes over the volume: of each order with `bounces`, else in all, with reflections in flight together. Schemes that
-  /// carry an order in one pass take it as the most orders.
+  /// Passes over the volume: of each order with `bounces`, else in all, with reflections in flight together. Schemes
+  /// that carry an order in one pass take it as the most orders.
   std::optional<int> iterations;
   /// rho_max: the scene's largest albedo.
   float largest_albedo = 0.5f;
@@ -32,10 +33,10 @@ struct BounceRules {
 
 /// What the solver did, for --stats and for warnings.
 struct BounceReport {
-  int orders = 0;         // transport orders run
-  int passes = 0;         // over the volume
-  glm::vec3 sent{0.0f};   // power sent by sides in all orders [W]
-  glm::vec3 left{0.0f};   // power not carried to its end: in flight, or not sent any more [W]
+  int orders = 0;        // transport orders run
+  int passes = 0;        // over the volume
+  glm::vec3 sent{0.0f};  // power sent by sides in all orders [W]
+  glm::vec3 left{0.0f};  // power not carried to its end: in flight, or not sent any more [W]
   bool converged = false;
 };
 

@@ -39,7 +39,8 @@ void BouncesGl::make_room(const VoxelGridGl& voxels) {
   for (gl::Buffer* b : {&received_, &received_direct_, &received_indirect_}) b->clear();
 }
 
-void BouncesGl::next_order(const VoxelGridGl& voxels, const gl::Buffer& total, const gl::Buffer* source, bool already_reflected) {
+void BouncesGl::next_order(const VoxelGridGl& voxels, const gl::Buffer& total, const gl::Buffer* source,
+                           bool already_reflected) {
   voxels.bind();
   received_.bind_storage(6);
   sent_.bind_storage(7);
@@ -65,8 +66,8 @@ void BouncesGl::request_sent(const VoxelGridGl& voxels) {
   readback_.push(sum_);
 }
 
-BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission, const BounceRules& rules,
-                            gl::PassTimer& timer) {
+BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission,
+                            const BounceRules& rules, gl::PassTimer& timer) {
   auto scope = timer.scope("propagation/propagate");
   make_room(voxels);
   BounceReport report;
@@ -95,7 +96,8 @@ BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, b
     report.orders += 1;
     report.sent += sent;
     report.left += carried.left;
-    if (order == 0) announce_long_run(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), rules);
+    if (order == 0)
+      announce_long_run(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), rules);
     const bool together = transport_->iterative() && order_rules.together();
     next_order(voxels, arrival_of_emission ? received_direct_ : received_indirect_,
                arrival_of_emission ? &flux.punctual() : nullptr, together);
@@ -105,8 +107,8 @@ BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, b
 }
 
 size_t BouncesGl::bytes() const {
-  return transport_->bytes() + received_.bytes() + sent_.bytes() + received_direct_.bytes() + received_indirect_.bytes() +
-         sum_.bytes() + partials_.bytes();
+  return transport_->bytes() + received_.bytes() + sent_.bytes() + received_direct_.bytes() +
+         received_indirect_.bytes() + sum_.bytes() + partials_.bytes();
 }
 
 }  // namespace volgi

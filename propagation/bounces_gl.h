@@ -23,7 +23,7 @@ class BouncesGl {
   BounceReport run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission, const BounceRules& rules,
                    gl::PassTimer& timer);
 
-  const gl::Buffer& received_direct() const { return received_direct_; }      // emission's first arrival [W], vec4 a side
+  const gl::Buffer& received_direct() const { return received_direct_; }  // emission's first arrival [W], vec4 a side
   const gl::Buffer& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
   size_t bytes() const;
 

@@ -28,7 +28,9 @@ OrdinateSet ordinate_set(int directions) {
       set.directions = {glm::normalize(glm::vec3(1.0f))};
       set.weights = {0.5f * glm::pi<float>()};
       break;
-    case 24: add_permutations(set, 0.267f, 0.682f, 1.0f / 3.0f); break;
+    case 24:
+      add_permutations(set, 0.267f, 0.682f, 1.0f / 3.0f);
+      break;
     case 48:
       add_permutations(set, 0.9261808f, 0.2666355f, 0.1761263f);
       add_permutations(set, 0.2666355f, 0.6815076f, 0.1572070f);

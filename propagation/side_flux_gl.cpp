@@ -47,7 +47,8 @@ void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces, gl::PassTimer& timer) {
+void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces,
+                                 gl::PassTimer& timer) {
   if (pieces.empty()) return;
   auto scope = timer.scope("propagation/inject_emitters");
   std::vector<glm::vec4> packed;

@@ -9,8 +9,8 @@
 namespace volgi {
 
 /// What lit and emissive surfaces send before any transport, as flux A·B0 per side [W] (vec4, rgb): light in.
-/// Sources are deposited one after another in fixed point (propagation/deposit.glsl), each with its own unit, so that the
-/// sum over sides is the sum over the source's samples to 2^-30 of the source's power, in any order of threads.
+/// Sources are deposited one after another in fixed point (propagation/deposit.glsl), each with its own unit, so that
+/// the sum over sides is the sum over the source's samples to 2^-30 of the source's power, in any order of threads.
 class SideFluxGl {
  public:
   SideFluxGl();

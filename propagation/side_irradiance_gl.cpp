@@ -6,7 +6,8 @@ SideIrradianceGl::SideIrradianceGl()
     : side_irradiance_(gl::Program::compute("propagation/side_irradiance.comp.glsl")),
       smooth_(gl::Program::compute("propagation/smooth_sides.comp.glsl")) {}
 
-void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces, gl::PassTimer& timer) {
+void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces,
+                           gl::PassTimer& timer) {
   auto scope = timer.scope("propagation/side_irradiance");
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
@@ -31,6 +32,8 @@ void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, co
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-size_t SideIrradianceGl::bytes() const { return raw_direct_.bytes() + raw_indirect_.bytes() + direct_.bytes() + indirect_.bytes(); }
+size_t SideIrradianceGl::bytes() const {
+  return raw_direct_.bytes() + raw_indirect_.bytes() + direct_.bytes() + indirect_.bytes();
+}
 
 }  // namespace volgi

@@ -7,7 +7,7 @@ namespace volgi {
 namespace {
 
 constexpr glm::ivec3 kLocal{8, 8, 2};  // propagate.comp.glsl, emit.comp.glsl
-constexpr int kBatch = 8;              // passes between two looks at the power in flight: a look costs a third of a pass
+constexpr int kBatch = 8;  // passes between two looks at the power in flight: a look costs a third of a pass
 
 // A pulse that has not ended after 64 crossings of the grid never will (a closed box without losses).
 int most_passes(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.z); }
@@ -55,7 +55,8 @@ void ConservativeTransportGl::emit(const VoxelGridGl& voxels, const gl::Buffer& 
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
-void ConservativeTransportGl::advance(const VoxelGridGl& voxels, const gl::Buffer& received, int passes, bool reflect_hits) {
+void ConservativeTransportGl::advance(const VoxelGridGl& voxels, const gl::Buffer& received, int passes,
+                                      bool reflect_hits) {
   voxels.bind();
   received.bind_storage(6);
   propagate_.use();

@@ -12,8 +12,8 @@ class TransportGl {
   /// @param sent      power per side (vec4, rgb) [W], >= 0.
   /// @param received  power per side (vec4, rgb) [W], added to.
   /// @param report    passes, and power that was left in flight, are added.
-  virtual void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received, const BounceRules& rules,
-                     BounceReport& report) = 0;
+  virtual void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
+                     const BounceRules& rules, BounceReport& report) = 0;
   /// Whether an order takes a number of passes that rules.iterations can set.
   virtual bool iterative() const = 0;
   virtual size_t bytes() const = 0;

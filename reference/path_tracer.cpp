@@ -40,6 +40,12 @@ glm::dvec3 asked_for(const HalfSum& sum, AskedLight light) {
   return light == AskedLight::indirect ? sum.indirect : sum.direct + sum.indirect;
 }
 
+Image half_difference(const Image& a, const Image& b) {
+  Image out = a;
+  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = 0.5f * (a.pixels[i] - b.pixels[i]);
+  return out;
+}
+
 class PictureTracer {
  public:
   PictureTracer(const Scene& scene, const Camera& camera, const PathTracerOptions& options)
@@ -142,15 +148,14 @@ ReferencePicture path_trace(const Scene& scene, const Camera& camera, const Path
 }
 
 ChannelImage to_channels(const ReferencePicture& picture) {
+  // Noise instead of the halves: the halves are color + noise and color - noise, and where they agree it costs nothing.
   ChannelImage out;
   out.width = picture.color.width;
   out.height = picture.color.height;
   out.add_rgb("", picture.color);
   out.add_rgb(picture.light == AskedLight::indirect ? "left_out.direct." : "direct.", picture.direct);
-  out.add_rgb("half_a.", picture.half_a);
-  out.add_rgb("half_b.", picture.half_b);
-  out.add_rgb("direct_half_a.", picture.direct_half_a);
-  out.add_rgb("direct_half_b.", picture.direct_half_b);
+  out.add_rgb("noise.", half_difference(picture.half_a, picture.half_b));
+  out.add_rgb("direct_noise.", half_difference(picture.direct_half_a, picture.direct_half_b));
   out.add_xyz("position.", picture.position);
   out.add_xyz("normal.", picture.normal);
   out.add_rgb("albedo.", picture.albedo);

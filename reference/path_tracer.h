@@ -34,9 +34,9 @@ struct ReferencePicture {
 /// black. Cost: samples · pixels · path length rays. Deterministic: the same bytes for any number of threads.
 ReferencePicture path_trace(const Scene& scene, const Camera& camera, const PathTracerOptions& options);
 
-/// Layers as channels: R,G,B; direct.RGB; half_a/half_b.RGB; direct_half_a/_b.RGB; position.XYZ; normal.XYZ;
-/// albedo.RGB; id; depth. Where R,G,B leave out the direct light (Light::indirect) its layer is called left_out.direct
-/// instead.
+/// Layers as channels: R,G,B; direct.RGB; noise.RGB = (half_a - half_b)/2; direct_noise.RGB likewise; position.XYZ;
+/// normal.XYZ; albedo.RGB; id; depth. Where R,G,B leave out the direct light (Light::indirect) its layer is called
+/// left_out.direct instead.
 ChannelImage to_channels(const ReferencePicture& picture);
 
 }  // namespace volgi

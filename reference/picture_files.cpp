@@ -12,9 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 using AskedLight = PathTracerOptions::Light;
 
-Image difference(const Image& a, const Image& b, float scale = 1.0f) {
+Image difference(const Image& a, const Image& b) {
   Image out = a;
-  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] = scale * (a.pixels[i] - b.pixels[i]);
+  for (size_t i = 0; i < out.pixels.size(); ++i) out.pixels[i] -= b.pixels[i];
   return out;
 }
 
@@ -37,12 +37,6 @@ Image layer(const ChannelImage& image, const fs::path& path, std::string_view pr
   return out;
 }
 
-std::optional<Image> half_difference(const ChannelImage& image, std::string_view a, std::string_view b) {
-  Image half_a, half_b;
-  if (!image.rgb(a, half_a) || !image.rgb(b, half_b)) return std::nullopt;
-  return difference(half_a, half_b, 0.5f);
-}
-
 std::optional<Image> difference(const std::optional<Image>& a, const std::optional<Image>& b) {
   if (!a || !b) return std::nullopt;
   return difference(*a, *b);
@@ -60,14 +54,14 @@ ColorAndNoise select(AskedLight light, ColorAndNoise picture, ColorAndNoise dire
 }
 
 bool is_own_reference(const ChannelImage& image) {
-  return image.find("position.X") != nullptr && image.find("half_a.R") != nullptr;
+  return image.find("position.X") != nullptr && image.find("noise.R") != nullptr;
 }
 
 ReferenceFile from_own(const ChannelImage& image, const fs::path& path, AskedLight light) {
   const bool without_direct = image.find("left_out.direct.R") != nullptr;
-  ColorAndNoise picture{layer(image, path, ""), half_difference(image, "half_a.", "half_b.")};
+  ColorAndNoise picture{layer(image, path, ""), layer(image, path, "noise.")};
   ColorAndNoise direct{layer(image, path, without_direct ? "left_out.direct." : "direct."),
-                       half_difference(image, "direct_half_a.", "direct_half_b.")};
+                       layer(image, path, "direct_noise.")};
   RegionLayers layers{layer(image, path, "position."), layer(image, path, "normal."), direct.color,
                       plane(image, path, "id"), plane(image, path, "depth")};
   if (without_direct && light == AskedLight::indirect) light = AskedLight::full;

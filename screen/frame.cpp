@@ -88,7 +88,7 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   RadianceLayers layers;
   layers.direct = {&direct_.radiance(), &gbuffer_.emission()};
   if (volume_) {
-    volume_->gather.run(gbuffer_, volume_->voxelization.voxels(), volume_->irradiance, timer);
+    volume_->gather.run(gbuffer_, camera, volume_->voxelization.voxels(), volume_->irradiance, timer);
     layers.direct.push_back(&volume_->gather.direct());
     layers.indirect.push_back(&volume_->gather.indirect());
   }

@@ -23,7 +23,7 @@ struct FrameOptions {
   std::optional<int> bounces;
   std::optional<int> iterations;
   Scheme scheme = Scheme::ordinates;
-  std::optional<int> directions;            // of `ordinates`; none: what goes with the grid
+  std::optional<int> directions;  // of `ordinates`; none: what goes with the grid
   ReflectiveShadowMap::Resolution shadow_resolution;
 };
 

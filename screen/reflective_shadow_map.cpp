@@ -51,7 +51,7 @@ void ReflectiveShadowMap::run(const gl::SceneBuffers& buffers, const Scene& scen
 }
 
 void ReflectiveShadowMap::draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer) {
-  const shared::ReflectiveShadowLayer& view = layers_[size_t(lights_[size_t(light)].first_layer + layer)];
+  const shared::ReflectiveShadowLayer& view = layers_[size_t(lights_[size_t(light)].first_layer) + size_t(layer)];
   const gl::Framebuffer& target = map.framebuffers[size_t(layer)];
   target.bind();
   constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};

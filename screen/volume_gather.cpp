@@ -14,8 +14,8 @@ VolumeGather::VolumeGather(glm::ivec2 size)
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }
 
-void VolumeGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, const SideIrradianceGl& irradiance,
-                       gl::PassTimer& timer) {
+void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels,
+                       const SideIrradianceGl& irradiance, gl::PassTimer& timer) {
   auto scope = timer.scope(name);
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
@@ -26,6 +26,8 @@ void VolumeGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, const 
   irradiance.direct().bind_storage(6);
   irradiance.indirect().bind_storage(7);
   program_.use();
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
   gl::draw_fullscreen_triangle();
 }
 

@@ -14,7 +14,8 @@ class VolumeGather {
  public:
   static constexpr const char* name = "screen/volume_gather";
   explicit VolumeGather(glm::ivec2 size);
-  void run(const GBuffer& gbuffer, const VoxelGridGl& voxels, const SideIrradianceGl& irradiance, gl::PassTimer& timer);
+  void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const SideIrradianceGl& irradiance,
+           gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]

@@ -1,9 +1,9 @@
 #include "voxel/emitter_pieces.h"
 
-#include <glm/gtc/constants.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "core/surface.h"
 
@@ -69,7 +69,8 @@ glm::vec2 uv_centroid(const Polygon& p) {
 }
 
 /// Mean emission over the piece: centroid, or half way from it to each of four corners when a texture varies.
-glm::vec3 mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, const Polygon& p, glm::vec2 centre) {
+glm::vec3 mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, const Polygon& p,
+                        glm::vec2 centre) {
   const Material& material = scene.materials[size_t(mesh.material)];
   if (material.emissive.texture < 0) return surface_point(scene, mesh, triangle, centre.x, centre.y).emission;
   glm::vec3 sum(0.0f);
@@ -89,7 +90,8 @@ void add_piece(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, con
   glm::vec3 flux = glm::pi<float>() * point.alpha * area * mean_emission(scene, mesh, triangle, piece, centre);
   if (flux == glm::vec3(0.0f)) return;
   out.push_back({point.position, point.geometric_normal, flux});
-  if (scene.materials[size_t(mesh.material)].double_sided) out.push_back({point.position, -point.geometric_normal, flux});
+  if (scene.materials[size_t(mesh.material)].double_sided)
+    out.push_back({point.position, -point.geometric_normal, flux});
 }
 
 int nearest_axis(glm::vec3 n) {
@@ -97,7 +99,8 @@ int nearest_axis(glm::vec3 n) {
   return a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
 }
 
-void cut_triangle(const Scene& scene, const Grid& grid, const Mesh& mesh, std::uint32_t triangle, std::vector<FluxSample>& out) {
+void cut_triangle(const Scene& scene, const Grid& grid, const Mesh& mesh, std::uint32_t triangle,
+                  std::vector<FluxSample>& out) {
   glm::uvec3 t = mesh.triangles[triangle];
   glm::vec3 p[3] = {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
   glm::vec3 cross = glm::cross(p[1] - p[0], p[2] - p[0]);

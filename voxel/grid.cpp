@@ -14,13 +14,15 @@ Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift
   }
   glm::dvec3 extent = glm::dvec3(scene.bounds_max) - glm::dvec3(scene.bounds_min);
   double longest = std::max({extent.x, extent.y, extent.z});
-  if (!(longest > 0.0)) throw Error(ExitCode::bad_input, scene.path.string() + ": all vertices in one point, nothing to voxelize");
+  if (!(longest > 0.0))
+    throw Error(ExitCode::bad_input, scene.path.string() + ": all vertices in one point, nothing to voxelize");
   double h = longest / cells_along_longest_axis;
   glm::dvec3 centre = 0.5 * (glm::dvec3(scene.bounds_max) + glm::dvec3(scene.bounds_min));
   Grid grid{};
   grid.cell_size_m = float(h);
   for (int axis = 0; axis < 3; ++axis) {
-    // A box of 2.0000001 cells has 2: the excess is rounding, and lies within the half cell that outer faces look beyond.
+    // A box of 2.0000001 cells has 2: the excess is rounding, and lies within the half cell that outer faces look
+    // beyond.
     int cells = std::max(1, int(std::ceil(extent[axis] / h - 1e-4)));
     double origin = centre[axis] - 0.5 * h * cells;
     double shift = shift_cells[axis];

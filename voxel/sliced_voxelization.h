@@ -11,13 +11,13 @@ namespace volgi {
 
 /// 3-way sliced voxelization (Gaitatzes 2010, Algorithm 1), timers "voxel/slice" and "voxel/list_sides".
 ///
-/// The scene is scan-converted once along each axis, one pixel for every column of cells. A fragment with depth x blocks
-/// the face whose two cell centres x lies between; a continuous surface therefore leaves no gap, however thin or sloped.
-/// Each blocked face has two sides, with the albedo, normal and emission of the surface nearest to the cell that sees it.
-/// We depart from the paper, which keeps one normal and colour per cell by MAX blending: in a wall thinner than a cell
-/// these cancel and leak (docs/theory.md#sides). Alpha: MASK cuts, BLEND covers the share alpha of a face.
-/// Results do not depend on the order of fragments. Cost: two raster passes per axis and one pass over the cells.
-/// Memory while it runs: 12 bytes a face (about 36 a cell), released by nobody: kept for the next frame.
+/// The scene is scan-converted once along each axis, one pixel for every column of cells. A fragment with depth x
+/// blocks the face whose two cell centres x lies between; a continuous surface therefore leaves no gap, however thin or
+/// sloped. Each blocked face has two sides, with the albedo, normal and emission of the surface nearest to the cell
+/// that sees it. We depart from the paper, which keeps one normal and colour per cell by MAX blending: in a wall
+/// thinner than a cell these cancel and leak (docs/theory.md#sides). Alpha: MASK cuts, BLEND covers the share alpha of
+/// a face. Results do not depend on the order of fragments. Cost: two raster passes per axis and one pass over the
+/// cells. Memory while it runs: 12 bytes a face (about 36 a cell), released by nobody: kept for the next frame.
 class SlicedVoxelization {
  public:
   explicit SlicedVoxelization(const Grid& grid);

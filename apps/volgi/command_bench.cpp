@@ -49,7 +49,8 @@ nlohmann::json BenchCommand::bench_frame(const std::string& name, gl::Context& c
   }
   auto stats = frame_stats(scene.name, "volume", options.size, context, timer, frames, frame.report());
   for (const auto& pass : stats["passes"]) {
-    if (pass["name"] == "propagation/propagate") stats["iteration_ms"] = pass["gpu_ms"].get<double>() / stats["iterations"].get<double>();
+    if (pass["name"] == "propagation/propagate")
+      stats["iteration_ms"] = pass["gpu_ms"].get<double>() / stats["iterations"].get<double>();
   }
   return stats;
 }
@@ -64,8 +65,10 @@ int BenchCommand::run() const {
     results.push_back(bench_frame(name, context));
     const auto& r = results.back();
     if (!json) {
-      fmt::print("{} {}x{}, {} iterations, {} ({} timer)\n{}", name, size, size, iterations, context.device_name(), r["timer"].get<std::string>(), pass_table(r));
-      if (r.contains("iteration_ms")) fmt::print("  one iteration of the volume {:.2f} ms\n", r["iteration_ms"].get<double>());
+      fmt::print("{} {}x{}, {} iterations, {} ({} timer)\n{}", name, size, size, iterations, context.device_name(),
+                 r["timer"].get<std::string>(), pass_table(r));
+      if (r.contains("iteration_ms"))
+        fmt::print("  one iteration of the volume {:.2f} ms\n", r["iteration_ms"].get<double>());
     }
   }
   if (json) fmt::print("{}\n", results.dump(1));
@@ -80,10 +83,18 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("NAME", options->names, "benchmarks to run: frame (all)");
   command->add_option("--data", options->data, "folder of cornell.glb")->capture_default_str();
   command->add_option("--generated", options->generated, "folder of atrium.glb")->capture_default_str();
-  command->add_option("--frames", options->frames, "frames measured, after two warm-up frames")->check(CLI::Range(1, 1000))->capture_default_str();
-  command->add_option("--size", options->size, "pixels on each side")->check(CLI::Range(16, 8192))->capture_default_str();
-  command->add_option("--grid", options->grid_cells, "cells along the longest axis")->check(CLI::Range(1, 128))->capture_default_str();
-  command->add_option("--iterations", options->iterations, "passes over the volume")->check(CLI::Range(1, 100000))->capture_default_str();
+  command->add_option("--frames", options->frames, "frames measured, after two warm-up frames")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "pixels on each side")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  command->add_option("--grid", options->grid_cells, "cells along the longest axis")
+      ->check(CLI::Range(1, 128))
+      ->capture_default_str();
+  command->add_option("--iterations", options->iterations, "passes over the volume")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   command->add_option("--device", options->device, "number of the EGL device");
   command->add_flag("--json", options->json, "print JSON");
   command->footer("Example: volgi bench frame --frames 5");

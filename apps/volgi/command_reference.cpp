@@ -62,9 +62,9 @@ void render(const ReferenceOptions& options) {
 }
 
 constexpr const char* kFooter =
-    R"(Writes R,G,B [W m^-2 sr^-1]; direct; half_a, half_b, direct_half_a, direct_half_b (independent halves of the
-samples, from which `volgi compare` takes the noise); position [m], normal, albedo, id, depth [m]. With --light indirect
-the direct layer is called left_out.direct. The same bytes for any number of threads.
+    R"(Writes R,G,B [W m^-2 sr^-1]; direct; noise, direct_noise (half the difference of two independent halves of the
+samples, what `volgi compare` takes out); position [m], normal, albedo, id, depth [m]. With --light indirect the direct
+layer is called left_out.direct. The same bytes for any number of threads.
 Example: volgi reference data/reference/scenes/cornell.glb -o cornell.exr --size 192x192 --spp 1024)";
 
 }  // namespace

@@ -36,7 +36,8 @@ struct RenderCommand {
 
 void refuse_unwritable(const std::filesystem::path& target) {
   // Seen now rather than after minutes of work; an existing file is left as it is.
-  write_atomically(target.parent_path() / ("." + target.filename().string() + ".writable"), [](const std::filesystem::path& p) { std::ofstream{p}; });
+  write_atomically(target.parent_path() / ("." + target.filename().string() + ".writable"),
+                   [](const std::filesystem::path& p) { std::ofstream{p}; });
   std::filesystem::remove(target.parent_path() / ("." + target.filename().string() + ".writable"));
 }
 
@@ -72,7 +73,7 @@ int RenderCommand::run() const {
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
 
   screen::Frame picture(loaded, options);
-  const bool timed = true;
+  const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
   // Two warm-up frames where times of several are wanted; one frame is shown with what it took from cold.
   const int warm_up = frames > 1 ? 2 : 0;
@@ -86,7 +87,8 @@ int RenderCommand::run() const {
   refuse_bad_picture(image);
   write_picture(image);
   auto numbers = frame_stats(loaded.name, frame.gi, size, context, timer, frames, picture.report());
-  numbers["parameters"] = {{"light", frame.light}, {"scheme", frame.scheme}, {"grid", frame.grid_cells}, {"set", frame.parameters}};
+  numbers["parameters"] = {
+      {"light", frame.light}, {"scheme", frame.scheme}, {"grid", frame.grid_cells}, {"set", frame.parameters}};
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << numbers.dump(1) << '\n'; });
   }
@@ -98,18 +100,25 @@ int RenderCommand::run() const {
 
 void add_render_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RenderCommand>();
-  CLI::App* command = app.add_subcommand("render", "render a glTF scene to an EXR (linear) or PNG (tone mapped) picture");
+  CLI::App* command =
+      app.add_subcommand("render", "render a glTF scene to an EXR (linear) or PNG (tone mapped) picture");
   options->scene.add_to(*command);
   command->add_option("-o,--output", options->out, "picture to write, .exr or .png")->capture_default_str();
   options->frame.add_to(*command);
-  command->add_option("--exposure", options->exposure_ev, "PNG only: stops (powers of two) before the tone map")->capture_default_str();
+  command->add_option("--exposure", options->exposure_ev, "PNG only: stops (powers of two) before the tone map")
+      ->capture_default_str();
   command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
-  command->add_option("--frames", options->frames, "render the same picture this often (after two warm-up frames) for times")
-      ->check(CLI::Range(1, 100000))->capture_default_str();
-  command->add_option("--device", options->device, "number of the EGL device (the first hardware device, else software)");
+  command
+      ->add_option("--frames", options->frames,
+                   "render the same picture this often (after two warm-up frames) for times")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--device", options->device,
+                      "number of the EGL device (the first hardware device, else software)");
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
-  command->footer("Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512");
+  command->footer(
+      "Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512");
   command->callback([options, &exit_code] { exit_code = options->run(); });
 }
 

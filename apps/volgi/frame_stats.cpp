@@ -4,10 +4,12 @@
 
 namespace volgi::app {
 
-nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size, const gl::Context& context,
-                           gl::PassTimer& timer, int frames, const screen::FrameReport& report) {
+nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size,
+                           const gl::Context& context, gl::PassTimer& timer, int frames,
+                           const screen::FrameReport& report) {
   nlohmann::json passes = nlohmann::json::array();
-  for (const auto& pass : timer.medians()) passes.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
+  for (const auto& pass : timer.medians())
+    passes.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
   auto frame = timer.frame_time();
   auto rgb = [](glm::vec3 v) { return nlohmann::json::array({v.x, v.y, v.z}); };
   return {
@@ -29,7 +31,11 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"vals", 0},
       {"backend", "gpu"},
       {"memory_bytes", report.memory_bytes},
-      {"power_W", {{"injected", rgb(report.injected)}, {"sent", rgb(report.bounces.sent)}, {"left", rgb(report.bounces.left)}, {"lost", rgb(report.lost)}}},
+      {"power_W",
+       {{"injected", rgb(report.injected)},
+        {"sent", rgb(report.bounces.sent)},
+        {"left", rgb(report.bounces.left)},
+        {"lost", rgb(report.lost)}}},
   };
 }
 
@@ -41,12 +47,13 @@ std::string pass_table(const nlohmann::json& stats) {
     sum += ms;
     text += fmt::format("  {:<38} {:9.2f} ms\n", pass["name"].get<std::string>(), ms);
   }
-  text += fmt::format("  {:<38} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame", stats["frame_ms"]["median"].get<double>(),
-                      stats["frames"].get<int>(), sum);
+  text += fmt::format("  {:<38} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
+                      stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum);
   if (stats["grid"][0] != 0) {
-    text += fmt::format("  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, {:.1f} MiB on the GPU\n", stats["grid"][0].get<int>(),
-                        stats["grid"][1].get<int>(), stats["grid"][2].get<int>(), stats["sides"].get<unsigned>(), stats["orders"].get<int>(),
-                        stats["iterations"].get<int>(), stats["memory_bytes"].get<double>() / 1048576.0);
+    text += fmt::format("  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, {:.1f} MiB on the GPU\n",
+                        stats["grid"][0].get<int>(), stats["grid"][1].get<int>(), stats["grid"][2].get<int>(),
+                        stats["sides"].get<unsigned>(), stats["orders"].get<int>(), stats["iterations"].get<int>(),
+                        stats["memory_bytes"].get<double>() / 1048576.0);
   }
   return text;
 }

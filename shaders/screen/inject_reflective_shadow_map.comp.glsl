@@ -1,6 +1,6 @@
 #version 450 core
-// Deposits the light that the texels of one light's reflective shadow map reflect. A thread takes 4 x 4 texels and adds
-// up what goes to one side before it touches memory.
+// Deposits the light that the texels of one light's reflective shadow map reflect. A thread takes 4 x 4 texels; those that
+// lie on the first one's plane, within half a cell of it, go to one place with all their power.
 #include "shared/reflective_shadow_map.glsl"
 #include "propagation/deposit.glsl"
 
@@ -8,29 +8,38 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform int light;
 uniform int resolution;
 
+void deposit(vec3 position, vec3 normal, vec3 flux) {
+  ivec3 targets;
+  vec3 weights;
+  sides_of_point(position, normal, targets, weights);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (weights[axis] > 0.0) add_flux(targets[axis], weights[axis] * flux);
+  }
+}
+
 void main() {
   ivec2 first = 4 * ivec2(gl_GlobalInvocationID.xy);
   if (first.x >= resolution || first.y >= resolution) return;
-  ivec3 pending = ivec3(-2);
-  vec3 sums[3] = vec3[3](vec3(0.0), vec3(0.0), vec3(0.0));
+  vec3 group_start = vec3(0.0), group_normal = vec3(0.0), group_flux = vec3(0.0), offset_sum = vec3(0.0);
+  float count = 0.0;
   for (int k = 0; k < 16; ++k) {
     ivec2 texel = first + ivec2(k & 3, k >> 2);
     vec3 position, normal, irradiance_flux, albedo;
     if (!rsm_texel(light, int(gl_GlobalInvocationID.z), texel, position, normal, irradiance_flux, albedo)) continue;
-    ivec3 targets;
-    vec3 weights;
-    sides_of_point(position, normal, targets, weights);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (weights[axis] == 0.0) continue;
-      if (targets[axis] != pending[axis]) {
-        if (pending[axis] != -2) add_flux(pending[axis], sums[axis]);
-        pending[axis] = targets[axis];
-        sums[axis] = vec3(0.0);
-      }
-      sums[axis] += weights[axis] * irradiance_flux * albedo;
+    vec3 flux = irradiance_flux * albedo;
+    vec3 offset = position - group_start;
+    bool same_plane = dot(normal, group_normal) > 0.999 && abs(dot(offset, group_normal)) < 0.02 * grid.cell_size_m;
+    if (count == 0.0) {
+      group_start = position;
+      group_normal = normal;
+      offset = vec3(0.0);
+    } else if (!same_plane || dot(offset, offset) > 0.25 * grid.cell_size_m * grid.cell_size_m) {
+      deposit(position, normal, flux);
+      continue;
     }
+    group_flux += flux;
+    offset_sum += offset;
+    count += 1.0;
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (pending[axis] != -2) add_flux(pending[axis], sums[axis]);
-  }
+  if (count > 0.0) deposit(group_start + offset_sum / count, group_normal, group_flux);
 }

@@ -15,6 +15,8 @@ layout(binding = 0) uniform sampler2D position_map;
 layout(binding = 1) uniform sampler2D normal_map;
 layout(binding = 2) uniform sampler2D albedo_map;
 
+uniform vec4 viewer;  // xyz position, w 1; or towards the viewer, w 0 (orthographic)
+
 layout(location = 0) out vec4 direct_radiance;    // first arrival of emission, reflected to the viewer
 layout(location = 1) out vec4 indirect_radiance;
 
@@ -69,8 +71,13 @@ void main() {
   indirect_radiance = vec4(0.0);
   if (position.w == 0.0) return;
   vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).zw);  // geometric
-  vec3 point = cell_from_world(grid, position.xyz) + 0.5 * normal;
-  // Strict first; a surface too thin or too tilted for the grid to show takes what is nearest, then what faces alike.
+  // A touch towards the viewer, which is on the visible side of every surface: pixels in a line of contact, which the
+  // rasterizer puts a fraction of a pixel behind the other surface, do not look at its dark side.
+  vec3 to_viewer = normalize(viewer.xyz - viewer.w * position.xyz);
+  vec3 point = cell_from_world(grid, position.xyz) + 0.5 * normal + 0.02 * to_viewer;
+  if (any(lessThan(point, vec3(-0.25))) || any(greaterThan(point, vec3(grid.cells) + 0.25))) return;  // faces the dark outside
+  // A surface too small or too tilted for the grid to show takes what is near, then what faces its way at
+  // all, at last (rims of boards, thin rods) whatever surface is near.
   Gathered g = gather_around(point, normal, 0.70710678, true, 0);
   if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1);
   if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1);

@@ -11,6 +11,7 @@ in vec2 v_uv1;
 in vec4 v_color;
 flat in vec3 v_normal;
 flat in float v_plane;
+flat in float v_moved;
 flat in uint v_triangle;
 
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
@@ -24,12 +25,29 @@ layout(std430, binding = 2) buffer Opacity { uint opacity[]; };   // bit 31: opa
 layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) writeonly buffer Sides { Side sides[]; };
 
-// Depth of the triangle's plane at the column's centre. The plane, not the interpolated position: the three passes then
-// agree on which side of the plane a cell centre lies, and a sloped wall has no holes.
+// Depth of the triangle's plane at the column's centre.
 float depth_at_column(vec2 column) {
   int b = axis_b(axis);
   int c = axis_c(axis);
   return (v_plane - v_normal[b] * column.x - v_normal[c] * column.y) / v_normal[axis];
+}
+
+// Whether the centre of cell i of the column lies below the surface. The same numbers whatever the axis: the three passes
+// agree on which side of the plane a cell centre lies, and a sloped wall has no holes. Depths would be rounded apart.
+bool centre_below(vec2 column, int i) {
+  vec3 centre;
+  centre[axis_b(axis)] = column.x;
+  centre[axis_c(axis)] = column.y;
+  centre[axis] = float(i) + 0.5;
+  precise float along_normal = v_normal.x * centre.x + v_normal.y * centre.y + v_normal.z * centre.z;
+  return (along_normal >= v_plane) != (v_normal[axis] > 0.0);
+}
+
+// The face between the last centre below the surface and the first above it.
+int blocked_face(vec2 column, float depth) {
+  int i = int(floor(clamp(depth, -2.0, float(grid.cells[axis]) + 2.0) + 0.5));
+  if (!centre_below(column, i - 1)) return i - 1;
+  return centre_below(column, i) ? i + 1 : i;
 }
 
 void write_side(ivec3 cell, int face, float depth, vec3 albedo, vec3 emission, float coverage) {
@@ -45,7 +63,7 @@ void write_side(ivec3 cell, int face, float depth, vec3 albedo, vec3 emission, f
   side.radiosity = front || material_double_sided != 0 ? 3.14159265 * emission : vec3(0.0);
   side.cell = offset;
   side.face = face;
-  side.depth = depth;
+  side.depth = depth - v_moved / v_normal[axis];
   side.pad = 0.0;
   uint index = side_index(cell_sides[offset], face);
   if (index < uint(sides.length())) sides[index] = side;  // too few: SlicedVoxelization grows the list and runs again
@@ -56,7 +74,7 @@ void main() {
   float stopped = material_coverage(albedo_alpha.a);
   if (stopped <= 0.0 || v_normal[axis] == 0.0) discard;
   float depth = depth_at_column(gl_FragCoord.xy);
-  int i = face_of_depth(depth);
+  int i = blocked_face(gl_FragCoord.xy, depth);
   if (i < 0 || i > grid.cells[axis]) discard;
   ivec3 face_cell = ivec3(0);
   face_cell[axis_b(axis)] = int(gl_FragCoord.x);
@@ -74,7 +92,7 @@ void main() {
     if (stopped >= 0.999) {
       atomicOr(opacity[face], 0x80000000u);
     } else {
-      atomicAdd(opacity[face], uint(-log(1.0 - stopped) * 65536.0 + 0.5));
+      atomicAdd(opacity[face], max(uint(-log(1.0 - stopped) * 65536.0 + 0.5), 1u));  // 0 would be no side
     }
     return;
   }

@@ -144,7 +144,7 @@ TEST_F(Hostile, NonFiniteNormalsAndTransforms) {
   const int n = writer.floats({0, 0, 1, 0, nan, 1, 0, 0, 1}, "VEC3");
   writer.mesh_node({{"attributes", {{"POSITION", p}, {"NORMAL", n}}}});
   expect_refused("NORMAL");
-  expect_change_refused("/nodes/0/scale", {1e300, 1, 1}, "beyond");
+  expect_change_refused("/nodes/0/scale", {1e300, 1, 1}, "not finite or beyond");
   writer = rich_scene();
   writer.root["nodes"][0]["scale"] = {1e200, 1e200, 1e200};
   writer.root["nodes"][3]["scale"] = {1e200, 1e200, 1e200};

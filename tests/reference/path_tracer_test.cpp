@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
+#include <string>
 
 #include "core/surface.h"
 #include "core/visibility/embree_scene.h"
+#include "reference/picture_files.h"
 #include "reference/sampler.h"
 #include "scenes.h"
 
@@ -109,6 +112,28 @@ TEST(PathTracer, LightAskedForAddsUp) {
   EXPECT_NE(to_channels(full).find("direct.R"), nullptr);
   EXPECT_EQ(to_channels(indirect).find("direct.R"), nullptr);
   EXPECT_NE(to_channels(indirect).find("left_out.direct.R"), nullptr);
+}
+
+// What compare reads back of a picture that was written: its light and its noise, apart as --light has them.
+TEST(PathTracer, FileKeepsLightAndNoise) {
+  const ReferencePicture p = path_trace(lit_box(), kInside, small(8));
+  const std::string path = ::testing::TempDir() + "volgi_file_keeps_light_and_noise.exr";
+  write_exr(path, to_channels(p));
+  const ReferenceFile full = read_reference(path, PathTracerOptions::Light::full);
+  const ReferenceFile indirect = read_reference(path, PathTracerOptions::Light::indirect);
+  std::remove(path.c_str());
+  ASSERT_TRUE(full.noise && full.layers && indirect.noise);
+  double noise = 0;
+  for (size_t i = 0; i < p.color.pixels.size(); ++i) {
+    const glm::vec3 n = 0.5f * (p.half_a.pixels[i] - p.half_b.pixels[i]);
+    const glm::vec3 direct = 0.5f * (p.direct_half_a.pixels[i] - p.direct_half_b.pixels[i]);
+    EXPECT_EQ(full.color.pixels[i], p.color.pixels[i]);
+    EXPECT_EQ(full.noise->pixels[i], n);
+    EXPECT_EQ(indirect.color.pixels[i], p.color.pixels[i] - p.direct.pixels[i]);
+    EXPECT_EQ(indirect.noise->pixels[i], n - direct);
+    noise += static_cast<double>(glm::dot(n, n));
+  }
+  EXPECT_GT(noise, 0.0);
 }
 
 // From three lights on, bounces ask one light, chosen by chance: the mean must stay the sum over the lights.
