@@ -8,7 +8,8 @@
 namespace volgi {
 
 namespace {
-constexpr int kGroup = 256;  // list_sides_*.comp.glsl
+constexpr int kGroup = 256;      // list_sides_*.comp.glsl
+constexpr int kAreaSamples = 4;  // along each edge of a face; 16 of them count its area to 6 % at an edge
 }
 
 void VoxelGridGl::bind() const {
@@ -27,7 +28,9 @@ SlicedVoxelization::SlicedVoxelization(const Grid& grid)
     : slice_(gl::Program::raster("voxel/slice")),
       count_(gl::Program::compute("voxel/list_sides_count.comp.glsl")),
       scan_(gl::Program::compute("voxel/list_sides_scan.comp.glsl")),
-      offset_(gl::Program::compute("voxel/list_sides_offset.comp.glsl")) {
+      offset_(gl::Program::compute("voxel/list_sides_offset.comp.glsl")),
+      side_area_(gl::Program::raster("voxel/side_area")),
+      collect_area_(gl::Program::compute("voxel/collect_area.comp.glsl")) {
   voxels_.grid = grid;
   voxels_.grid_block = gl::Buffer(sizeof(Grid), &grid);
   voxels_.cell_sides = gl::Buffer(8 * cell_count(grid));
@@ -41,8 +44,9 @@ SlicedVoxelization::SlicedVoxelization(const Grid& grid)
     key_low_[axis] = gl::Buffer(bytes);
     key_high_[axis] = gl::Buffer(bytes);
     opacity_[axis] = gl::Buffer(bytes);
-    columns_[axis] =
-        gl::Framebuffer::without_attachments({grid.cells[shared::axis_b(axis)], grid.cells[shared::axis_c(axis)]});
+    const glm::ivec2 columns(grid.cells[shared::axis_b(axis)], grid.cells[shared::axis_c(axis)]);
+    columns_[axis] = gl::Framebuffer::without_attachments(columns);
+    fine_columns_[axis] = gl::Framebuffer::without_attachments(kAreaSamples * columns);
   }
 }
 
@@ -67,14 +71,19 @@ void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer
     counted_->pop(&count);
     make_room(count);
   }
-  auto scope = timer.scope("voxel/slice");
-  slice(scene, true);
+  {
+    auto scope = timer.scope("voxel/slice");
+    slice(scene, true);
+  }
+  auto scope = timer.scope("voxel/side_area");
+  count_area(scene);
 }
 
 void SlicedVoxelization::make_room(std::uint32_t side_count) {
   if (voxels_.side_capacity != 0 && side_count <= voxels_.side_capacity) return;
   voxels_.side_capacity = side_count + side_count / 5 + 64;
   voxels_.sides = gl::Buffer(sizeof(shared::Side) * size_t(voxels_.side_capacity));
+  area_fixed_ = gl::Buffer(sizeof(std::uint32_t) * size_t(voxels_.side_capacity));
 }
 
 void SlicedVoxelization::slice(const gl::SceneBuffers& scene, bool write_sides) {
@@ -91,6 +100,24 @@ void SlicedVoxelization::slice(const gl::SceneBuffers& scene, bool write_sides) 
     columns_[axis].bind();
     scene.draw(slice_);
   }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void SlicedVoxelization::count_area(const gl::SceneBuffers& scene) {
+  area_fixed_.clear();
+  voxels_.bind();
+  area_fixed_.bind_storage(0);
+  side_area_.use();
+  side_area_.set("samples_per_cell", float(kAreaSamples));
+  for (int axis = 0; axis < 3; ++axis) {
+    side_area_.set("axis", axis);
+    gl::begin_fullscreen_pass();
+    fine_columns_[axis].bind();
+    scene.draw(side_area_);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  collect_area_.use();
+  gl::dispatch({int(voxels_.side_capacity), 1, 1}, {64, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -111,7 +138,7 @@ void SlicedVoxelization::list_sides() {
 }
 
 size_t SlicedVoxelization::bytes() const {
-  size_t sum = voxels_.bytes() + group_totals_.bytes();
+  size_t sum = voxels_.bytes() + group_totals_.bytes() + area_fixed_.bytes();
   for (int axis = 0; axis < 3; ++axis) sum += key_low_[axis].bytes() + key_high_[axis].bytes() + opacity_[axis].bytes();
   return sum;
 }

@@ -9,7 +9,8 @@
 
 namespace volgi {
 
-/// 3-way sliced voxelization (Gaitatzes 2010, Algorithm 1), timers "voxel/slice" and "voxel/list_sides".
+/// 3-way sliced voxelization (Gaitatzes 2010, Algorithm 1), timers "voxel/slice", "voxel/list_sides" and
+/// "voxel/side_area".
 ///
 /// The scene is scan-converted once along each axis, one pixel for every column of cells. A fragment with depth x
 /// blocks the face whose two cell centres x lies between; a continuous surface therefore leaves no gap, however thin or
@@ -31,16 +32,21 @@ class SlicedVoxelization {
  private:
   void slice(const gl::SceneBuffers& scene, bool write_sides);
   void list_sides();
+  void count_area(const gl::SceneBuffers& scene);
   void make_room(std::uint32_t side_count);
 
   gl::Program slice_;
   gl::Program count_;
   gl::Program scan_;
   gl::Program offset_;
+  gl::Program side_area_;
+  gl::Program collect_area_;
   VoxelGridGl voxels_;
   gl::Buffer key_low_[3], key_high_[3], opacity_[3];
   gl::Buffer group_totals_;
+  gl::Buffer area_fixed_;
   gl::Framebuffer columns_[3];
+  gl::Framebuffer fine_columns_[3];
   std::unique_ptr<gl::Readback> counted_;  // side counts of earlier frames
   int groups_ = 0;
 };

@@ -15,10 +15,5 @@ uniform int piece_count;
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= piece_count) return;
-  ivec3 targets;
-  vec3 weights;
-  sides_of_point(pieces[i].position.xyz, pieces[i].normal.xyz, targets, weights);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (weights[axis] > 0.0) add_flux(targets[axis], weights[axis] * pieces[i].flux.rgb);
-  }
+  deposit(pieces[i].position.xyz, pieces[i].normal.xyz, pieces[i].flux.rgb);
 }

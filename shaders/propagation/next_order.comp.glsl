@@ -18,8 +18,8 @@ void main() {
   if (i >= side_count) return;
   Side side = sides[i];
   vec3 hit = received[i].rgb;
-  vec3 power = already_reflected ? vec3(0.0) : hit * side_returned_fraction(side.albedo, side.staircase);
-  if (add_source) power += side_sent_power(source_flux[i].rgb, side.albedo, side.staircase);
+  vec3 power = already_reflected ? vec3(0.0) : hit * side_returned_fraction(side.albedo, side.area_m2, side.face_m2);
+  if (add_source) power += side_sent_power(source_flux[i].rgb, side.albedo, side.area_m2, side.face_m2);
   total[i].rgb += hit;
   received[i] = vec4(0.0);
   sent[i] = vec4(power, 0.0);

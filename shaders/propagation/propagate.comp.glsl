@@ -69,7 +69,7 @@ void main() {
       vec3 hit = tau * max(vec3(pyramid_power(own_red, face), pyramid_power(own_green, face), pyramid_power(own_blue, face)), vec3(0.0));
       received[index].rgb += hit;
       if (reflect_hits) {
-        vec3 power = hit * side_returned_fraction(sides[index].albedo, sides[index].staircase);
+        vec3 power = hit * side_returned_fraction(sides[index].albedo, sides[index].area_m2, sides[index].face_m2);
         vec4 lobe = side_lobe(face);
         red += power.r * lobe;
         green += power.g * lobe;

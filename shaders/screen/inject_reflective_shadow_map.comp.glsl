@@ -8,15 +8,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform int light;
 uniform int resolution;
 
-void deposit(vec3 position, vec3 normal, vec3 flux) {
-  ivec3 targets;
-  vec3 weights;
-  sides_of_point(position, normal, targets, weights);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (weights[axis] > 0.0) add_flux(targets[axis], weights[axis] * flux);
-  }
-}
-
 void main() {
   ivec2 first = 4 * ivec2(gl_GlobalInvocationID.xy);
   if (first.x >= resolution || first.y >= resolution) return;

@@ -72,19 +72,11 @@ SHARED_FUNCTION int face_of_depth(float x) {
   return int(floor(snapped + 0.5f));
 }
 
-// The surface as the slicing passes see it. No vertex and no wall may lie exactly on a cell centre: a wall would then be
-// on one side of it in one pass and on the other in the next, or end beside it in one and cover it in the other, and
-// light would slip through. Centres are even multiples of 2^-8 cells; rasterizers keep 8 bits below a pixel.
-// Vertices go to odd multiples; what lies within 2^-9 below a multiple of 2^-7 goes up with it, so that rounding cannot
-// part the vertices of a wall through centres.
-SHARED_FUNCTION vec3 slice_vertex(vec3 cell) { return (floor(cell * 128.0f + 0.25f) + 0.5f) / 128.0f; }
-// Plane of a triangle, dot(normal, x) in cell units, from a point on it. Walls across an axis go where their edges went;
-// others are moved by about as much, by different amounts on the axes, so that no simple slope stays on centres.
-SHARED_FUNCTION float slice_plane(vec3 normal, vec3 cell) {
-  vec3 a = abs(normal);
-  if (a.x + a.y + a.z < 1.00001f) return dot(normal, slice_vertex(cell));
-  return dot(normal, cell + vec3(0.0035f, 0.0039f, 0.0044f));
-}
+// Vertices as the slicing passes see them: rounded to 2^-9 cells, so that which columns a triangle covers and which cell
+// centres lie behind it can be answered exactly, in double precision up to 128 cells. The answers then are about one
+// surface, and what is closed in the scene is closed in the volume.
+#define SLICE_STEPS 512  // of a cell; even, so that centres are whole
+SHARED_FUNCTION ivec3 slice_vertex(vec3 cell) { return ivec3(floor(cell * float(SLICE_STEPS) + 0.5f)); }
 
 SHARED_END
 #endif

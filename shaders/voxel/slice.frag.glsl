@@ -6,12 +6,11 @@
 #include "shared/side.shared.h"
 #include "shared/material.glsl"
 
-in vec2 v_uv0;
-in vec2 v_uv1;
-in vec4 v_color;
-flat in vec3 v_normal;
-flat in float v_plane;
-flat in float v_moved;
+flat in ivec3 v_vertex[3];  // slice_vertex
+flat in vec2 v_uv0[3];
+flat in vec2 v_uv1[3];
+flat in vec4 v_color[3];
+flat in vec3 v_normal;  // zero for a triangle that had no area before its vertices were rounded
 flat in uint v_triangle;
 
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
@@ -25,64 +24,99 @@ layout(std430, binding = 2) buffer Opacity { uint opacity[]; };   // bit 31: opa
 layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) writeonly buffer Sides { Side sides[]; };
 
-// Depth of the triangle's plane at the column's centre.
-float depth_at_column(vec2 column) {
+// Exact geometry in steps of slice_vertex. Cell centres count as moved by (e, e^2, e^3), e above 0 but next to nothing, so
+// that none lies on an edge or a plane (simulation of simplicity, Edelsbrunner and Muecke 1990): signs are never 0.
+
+// On which side of the edge p-q the column lies, times twice the area of the three.
+double edge_area(ivec3 p, ivec3 q, ivec3 column, out bool positive) {
   int b = axis_b(axis);
   int c = axis_c(axis);
-  return (v_plane - v_normal[b] * column.x - v_normal[c] * column.y) / v_normal[axis];
+  double eb = double(q[b] - p[b]);
+  double ec = double(q[c] - p[c]);
+  double area = eb * double(column[c] - p[c]) - ec * double(column[b] - p[b]);
+  double moved_b = -ec;  // what a step along b and along c would add; the lower axis moves more
+  double moved_c = eb;
+  if (b < c) {
+    positive = area != 0.0 ? area > 0.0 : moved_b != 0.0 ? moved_b > 0.0 : moved_c > 0.0;
+  } else {
+    positive = area != 0.0 ? area > 0.0 : moved_c != 0.0 ? moved_c > 0.0 : moved_b > 0.0;
+  }
+  return area;
 }
 
-// Whether the centre of cell i of the column lies below the surface. The same numbers whatever the axis: the three passes
-// agree on which side of the plane a cell centre lies, and a sloped wall has no holes. Depths would be rounded apart.
-bool centre_below(vec2 column, int i) {
-  vec3 centre;
-  centre[axis_b(axis)] = column.x;
-  centre[axis_c(axis)] = column.y;
-  centre[axis] = float(i) + 0.5;
-  precise float along_normal = v_normal.x * centre.x + v_normal.y * centre.y + v_normal.z * centre.z;
-  return (along_normal >= v_plane) != (v_normal[axis] > 0.0);
+dvec3 plane_normal() {
+  dvec3 u = dvec3(v_vertex[1] - v_vertex[0]);
+  dvec3 v = dvec3(v_vertex[2] - v_vertex[0]);
+  return cross(u, v);
+}
+
+// Whether the centre of cell i of the column lies below the surface along the axis.
+bool centre_below(dvec3 n, ivec3 column, int i) {
+  column[axis] = i * SLICE_STEPS + SLICE_STEPS / 2;
+  double height = dot(n, dvec3(column - v_vertex[0]));
+  bool ahead = height != 0.0 ? height > 0.0 : n.x != 0.0 ? n.x > 0.0 : n.y != 0.0 ? n.y > 0.0 : n.z > 0.0;
+  return ahead != (n[axis] > 0.0);
 }
 
 // The face between the last centre below the surface and the first above it.
-int blocked_face(vec2 column, float depth) {
+int blocked_face(dvec3 n, ivec3 column, float depth) {
   int i = int(floor(clamp(depth, -2.0, float(grid.cells[axis]) + 2.0) + 0.5));
-  if (!centre_below(column, i - 1)) return i - 1;
-  return centre_below(column, i) ? i + 1 : i;
+  if (!centre_below(n, column, i - 1)) return i - 1;
+  return centre_below(n, column, i) ? i + 1 : i;
 }
 
-void write_side(ivec3 cell, int face, float depth, vec3 albedo, vec3 emission, float coverage) {
+void write_side(ivec3 cell, int face, vec3 normal, float depth, vec3 albedo, vec3 emission, float coverage) {
   if (!cell_inside(grid, cell)) return;
   int offset = cell_index(grid, cell);
   Side side;
-  bool front = v_normal[axis] * float(face_sign(face)) < 0.0;  // the cell looks along +face at the surface
-  side.normal = front ? v_normal : -v_normal;
+  bool front = normal[axis] * float(face_sign(face)) < 0.0;  // the cell looks along +face at the surface
+  side.normal = front ? normal : -normal;
   side.coverage = coverage;
   side.albedo = albedo;
-  side.staircase = staircase_factor(v_normal);
-  side.area_m2 = side_area(coverage, grid.cell_size_m, side.staircase);
+  side.face_m2 = coverage * grid.cell_size_m * grid.cell_size_m;
+  side.area_m2 = side.face_m2 / staircase_factor(normal);  // until collect_area
   side.radiosity = front || material_double_sided != 0 ? 3.14159265 * emission : vec3(0.0);
   side.cell = offset;
   side.face = face;
-  side.depth = depth - v_moved / v_normal[axis];
-  side.pad = 0.0;
+  side.depth = depth;
+  side.front = front ? 1 : 0;
   uint index = side_index(cell_sides[offset], face);
   if (index < uint(sides.length())) sides[index] = side;  // too few: SlicedVoxelization grows the list and runs again
 }
 
 void main() {
-  vec4 albedo_alpha = material_albedo_alpha(v_uv0, v_uv1, v_color);
+  int b = axis_b(axis);
+  int c = axis_c(axis);
+  ivec3 column = ivec3(0);
+  column[b] = int(gl_FragCoord.x) * SLICE_STEPS + SLICE_STEPS / 2;
+  column[c] = int(gl_FragCoord.y) * SLICE_STEPS + SLICE_STEPS / 2;
+  bvec3 positive;
+  dvec3 areas = dvec3(edge_area(v_vertex[1], v_vertex[2], column, positive.x),
+                      edge_area(v_vertex[2], v_vertex[0], column, positive.y),
+                      edge_area(v_vertex[0], v_vertex[1], column, positive.z));
+  dvec3 n = plane_normal();
+  vec3 weights = n[axis] != 0.0 ? vec3(areas / n[axis]) : vec3(1.0, 0.0, 0.0);
+  vec2 uv0 = weights.x * v_uv0[0] + weights.y * v_uv0[1] + weights.z * v_uv0[2];
+  vec2 uv1 = weights.x * v_uv1[0] + weights.y * v_uv1[1] + weights.z * v_uv1[2];
+  vec4 color = weights.x * v_color[0] + weights.y * v_color[1] + weights.z * v_color[2];
+  // Textures first: their mip level comes from neighbouring fragments.
+  vec4 albedo_alpha = material_albedo_alpha(uv0, uv1, color);
+  vec3 emission = material_emission(uv0, uv1);
   float stopped = material_coverage(albedo_alpha.a);
-  if (stopped <= 0.0 || v_normal[axis] == 0.0) discard;
-  float depth = depth_at_column(gl_FragCoord.xy);
-  int i = blocked_face(gl_FragCoord.xy, depth);
+  if (n[axis] == 0.0 || positive != bvec3(n[axis] > 0.0) || stopped <= 0.0) discard;
+  float depth = dot(weights, vec3(v_vertex[0][axis], v_vertex[1][axis], v_vertex[2][axis])) / float(SLICE_STEPS);
+  int i = blocked_face(n, column, depth);
   if (i < 0 || i > grid.cells[axis]) discard;
+  // Rounding may tilt what the axis runs along to the other side.
+  vec3 normal = v_normal[axis] * float(n[axis]) > 0.0 ? v_normal : vec3(normalize(n));
   ivec3 face_cell = ivec3(0);
-  face_cell[axis_b(axis)] = int(gl_FragCoord.x);
-  face_cell[axis_c(axis)] = int(gl_FragCoord.y);
+  face_cell[b] = int(gl_FragCoord.x);
+  face_cell[c] = int(gl_FragCoord.y);
   face_cell[axis] = i;
   int face = face_index(grid, axis, face_cell);
+  depth = clamp(depth, float(i) - 0.5, float(i) + 0.5);
   uint depth_max = (1u << (32 - triangle_bits)) - 1u;
-  uint quantised = min(uint(clamp(depth - float(i) + 0.5, 0.0, 1.0) * float(depth_max)), depth_max - 1u);
+  uint quantised = min(uint((depth - float(i) + 0.5) * float(depth_max)), depth_max - 1u);
   uint id = v_triangle & ((1u << triangle_bits) - 1u);
   uint low = (quantised << triangle_bits) | id;
   uint high = ((depth_max - 1u - quantised) << triangle_bits) | id;
@@ -96,11 +130,10 @@ void main() {
     }
     return;
   }
-  vec3 emission = material_emission(v_uv0, v_uv1);
   uint o = opacity[face];
   float coverage = o >= 0x80000000u ? 1.0 : 1.0 - exp(-float(o) / 65536.0);
   ivec3 below = face_cell;
   below[axis] -= 1;
-  if (key_low[face] == low) write_side(below, 2 * axis + 1, depth, albedo_alpha.rgb, emission, coverage);
-  if (key_high[face] == high) write_side(face_cell, 2 * axis, depth, albedo_alpha.rgb, emission, coverage);
+  if (key_low[face] == low) write_side(below, 2 * axis + 1, normal, depth, albedo_alpha.rgb, emission, coverage);
+  if (key_high[face] == high) write_side(face_cell, 2 * axis, normal, depth, albedo_alpha.rgb, emission, coverage);
 }

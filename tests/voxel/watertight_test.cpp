@@ -98,8 +98,8 @@ int escapes(const Voxels& v, glm::vec3 middle, const Outside& outside) {
   const std::vector<char> reached = v.flood(start);
   int count = 0;
   for (int i = 0; i < int(reached.size()); ++i) {
-    // Surfaces are moved by up to 2^-7 cells, so that none lies on centres.
-    const bool beyond = outside(v.centre(shared::cell_coord(v.grid, i))) > v.grid.cell_size_m / 64.0f;
+    // Vertices are rounded to 2^-9 cells (slice_vertex).
+    const bool beyond = outside(v.centre(shared::cell_coord(v.grid, i))) > v.grid.cell_size_m / 256.0f;
     count += beyond ? reached[size_t(i)] : 0;
   }
   return count;
@@ -132,7 +132,7 @@ TEST_F(Watertight, RandomBoxes) {
   SlicedVoxelization voxelization(unit_grid(32));
   std::uint32_t state = 1;
   const auto random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-23f - 1.0f; };
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 80; ++i) {
     const glm::vec3 middle = 0.1f * glm::vec3(random(), random(), random());
     const glm::vec3 half = glm::vec3(0.35f) + 0.1f * glm::vec3(random(), random(), random());
     // Every other one upright or turned about one axis, as rooms are.
