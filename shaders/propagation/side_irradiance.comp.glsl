@@ -16,8 +16,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= side_count) return;
   Side side = sides[i];
-  vec3 first = side_irradiance_power(total_direct[i].rgb, emitted_flux[i].rgb, side.albedo, side.area_m2, side.face_m2);
-  vec3 rest = side_irradiance_power(total_indirect[i].rgb, punctual_flux[i].rgb, side.albedo, side.area_m2, side.face_m2);
-  direct[i] = vec4(first, side.area_m2);
-  indirect[i] = vec4(rest, side.area_m2);
+  vec3 first = side_irradiance(total_direct[i].rgb, emitted_flux[i].rgb, side.albedo, side.normal, side.area_m2, side.face_m2);
+  vec3 rest = side_irradiance(total_indirect[i].rgb, punctual_flux[i].rgb, side.albedo, side.normal, side.area_m2, side.face_m2);
+  direct[i] = vec4(first * side.area_m2, side.area_m2);
+  indirect[i] = vec4(rest * side.area_m2, side.area_m2);
 }

@@ -50,9 +50,11 @@ SHARED_FUNCTION vec3 side_sent_power(vec3 flux, vec3 albedo, float area_m2, floa
 SHARED_FUNCTION vec3 side_returned_fraction(vec3 albedo, float area_m2, float face_m2) {
   return face_m2 * albedo / side_denominator(albedo, area_m2, face_m2);
 }
-// E * A [W]
-SHARED_FUNCTION vec3 side_irradiance_power(vec3 received_power, vec3 flux, vec3 albedo, float area_m2, float face_m2) {
-  return (received_power * area_m2 - (face_m2 - area_m2) * flux) / side_denominator(albedo, area_m2, face_m2);
+// Irradiance of the surface [W m^-2]. It belongs to the surface's plane, so the staircase here is that of its normal: a side
+// near an edge that stands for more surface than its face is not darker for that. Can be negative on tilted surfaces.
+SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo, vec3 normal, float area_m2, float face_m2) {
+  float s = staircase_factor(normal);
+  return (received_power * (s / face_m2) - (s - 1.0f) * flux / area_m2) / (1.0f + (s - 1.0f) * albedo);
 }
 // A side that no surface was counted for keeps this part of its face as area, so that nothing is divided by zero.
 #define SIDE_LEAST_AREA 1e-3f
