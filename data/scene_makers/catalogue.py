@@ -28,7 +28,7 @@ SCENES = {
     'closed_box': Entry(small.closed_box, _exactly(60), 128, albedo=0.7),
     'furnace': Entry(small.furnace, _exactly(12), 64, albedo=0.5),
     'occluder': Entry(small.occluder, _exactly(22), 1024),
-    'corridor': Entry(small.corridor, (26, 60), 1024),
+    'corridor': Entry(small.corridor, (26, 60), 2048),
     'emissive': Entry(small.emissive, (1400, 1800), 512),
     'arena': Entry(arena.arena, (9500, 10500), 512, committed=False),
     'atrium': Entry(atrium.atrium, (65000, 67000), 512, committed=False),

@@ -56,6 +56,14 @@ inline Voxels voxelize(const gl::Context& context, SlicedVoxelization& voxelizat
   return download(voxelization.voxels());
 }
 
+/// Blocked faces only: these are right from the first run on.
+inline Voxels blocked_faces(const gl::Context& context, SlicedVoxelization& voxelization, const Scene& scene) {
+  gl::PassTimer timer(context.software(), false);
+  voxelization.run(gl::SceneBuffers(scene), timer);
+  const VoxelGridGl& gpu = voxelization.voxels();
+  return {gpu.grid, gpu.cell_sides.download<glm::uvec2>(cell_count(gpu.grid)), {}};
+}
+
 inline Voxels voxelize(const gl::Context& context, const Scene& scene, const Grid& grid) {
   SlicedVoxelization voxelization(grid);
   return voxelize(context, voxelization, scene);

@@ -17,7 +17,7 @@ class Watertight : public GlTest {
   int leaks(const Scene& scene, int n, glm::vec3 on_wall, glm::vec3 normal, float clearance) {
     auto& voxelization = voxelizations_[n];
     if (!voxelization) voxelization = std::make_unique<SlicedVoxelization>(unit_grid(n));
-    const Voxels v = voxelize(context(), *voxelization, scene);
+    const Voxels v = blocked_faces(context(), *voxelization, scene);
     const auto distance = [&](int i) { return glm::dot(v.centre(shared::cell_coord(v.grid, i)) - on_wall, normal); };
     std::vector<char> start(v.cells.size(), 0);
     int before = 0, behind = 0, leaking = 0;
@@ -120,7 +120,7 @@ TEST_F(Watertight, ClosedBoxes) {
           const glm::vec3 q = glm::abs(glm::transpose(turn) * (p - offset)) - half;
           return std::max({q.x, q.y, q.z});
         };
-        EXPECT_EQ(escapes(voxelize(context(), voxelization, scene), offset, outside), 0)
+        EXPECT_EQ(escapes(blocked_faces(context(), voxelization, scene), offset, outside), 0)
             << "turn " << t << ", half edge " << half << ", offset " << offset.x;
       }
     }
@@ -144,7 +144,7 @@ TEST_F(Watertight, RandomBoxes) {
       const glm::vec3 q = glm::abs(glm::transpose(turn) * (p - middle)) - half;
       return std::max({q.x, q.y, q.z});
     };
-    EXPECT_EQ(escapes(voxelize(context(), voxelization, scene), middle, outside), 0) << "box " << i;
+    EXPECT_EQ(escapes(blocked_faces(context(), voxelization, scene), middle, outside), 0) << "box " << i;
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(Watertight, ClosedSpheres) {
         Scene scene;
         add_sphere_inside(scene, add_material(scene, glm::vec3(0.5f)), glm::vec3(0.0f), radius, rings);
         const auto outside = [&](glm::vec3 p) { return glm::length(p) - radius; };
-        EXPECT_EQ(escapes(voxelize(context(), voxelization, scene), glm::vec3(0.0f), outside), 0)
+        EXPECT_EQ(escapes(blocked_faces(context(), voxelization, scene), glm::vec3(0.0f), outside), 0)
             << n << " cells, " << rings << " rings, radius " << radius;
       }
     }

@@ -1,0 +1,58 @@
+#include "propagation/bounce_rules.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace volgi {
+namespace {
+
+BounceRules with_albedo(float albedo) {
+  BounceRules rules;
+  rules.largest_albedo = albedo;
+  return rules;
+}
+
+TEST(BounceRules, AbsorptionIsBoundedBelow) {
+  EXPECT_NEAR(with_albedo(0.7f).absorption(), 0.3f, 1e-6f);
+  EXPECT_EQ(with_albedo(1.0f).absorption(), BounceRules::kLeastAbsorption);
+}
+
+TEST(BounceRules, PulseEndsWhenTheSlowestBandHas) {
+  const BounceRules rules = with_albedo(0.5f);
+  const float limit = BounceRules::kTolerance * 0.5f;
+  EXPECT_TRUE(rules.pulse_ended(glm::vec3(0.9f * limit), glm::vec3(1.0f)));
+  EXPECT_FALSE(rules.pulse_ended(glm::vec3(0.0f, 1.1f * limit, 0.0f), glm::vec3(1.0f)));
+  EXPECT_TRUE(rules.pulse_ended(glm::vec3(0.0f), glm::vec3(0.0f)));
+  EXPECT_TRUE(rules.pulse_ended(glm::vec3(9e5f * limit), glm::vec3(1e6f)));  // relative to what was sent
+}
+
+// What all later orders can add, the geometric series of the largest albedo, is under the tolerance.
+TEST(BounceRules, OrdersEndWithinTheTolerance) {
+  for (float albedo : {0.3f, 0.7f, 0.95f, 0.99f}) {
+    const BounceRules rules = with_albedo(albedo);
+    double sent = 1.0, total = 0.0;
+    int orders = 0;
+    while (!rules.orders_ended(glm::vec3(float(sent)), glm::vec3(float(total))) && orders < 10000) {
+      total += sent;
+      sent *= double(albedo);
+      ++orders;
+    }
+    EXPECT_LE(1.0 / (1.0 - double(albedo)) - total, 1.01 * double(BounceRules::kTolerance) * total);
+    EXPECT_GT(orders, 1);
+    EXPECT_LE(orders, rules.expected_orders() + 2);
+  }
+}
+
+TEST(BounceRules, ReflectionsInFlightTogether) {
+  BounceRules rules;
+  EXPECT_FALSE(rules.together());
+  rules.iterations = 32;
+  EXPECT_TRUE(rules.together());
+  rules.bounces = 2;
+  EXPECT_FALSE(rules.together());
+  EXPECT_EQ(rules.expected_orders(), 2);
+}
+
+}  // namespace
+}  // namespace volgi

@@ -1,0 +1,98 @@
+// One transport order of the `ordinates` scheme: conserves, never negative, reciprocal, linear.
+#include "propagation/transport_ordinates_gl.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/propagation/transport_scene.h"
+
+namespace volgi::test {
+namespace {
+
+class OrdinatesGl : public GlTest, public testing::WithParamInterface<int> {
+ protected:
+  void SetUp() override {
+    GlTest::SetUp();
+    if (IsSkipped()) return;
+    voxels_ = voxelize(context(), furnished_box(), unit_grid(12));
+    gpu_ = upload(voxels_);
+    transport_ = std::make_unique<OrdinatesTransportGl>(voxels_.grid, GetParam());
+  }
+  Powers carry(const Powers& sent) { return test::carry(*transport_, gpu_, sent); }
+
+  Voxels voxels_;
+  VoxelGridGl gpu_;
+  std::unique_ptr<OrdinatesTransportGl> transport_;
+};
+
+TEST_P(OrdinatesGl, ClosedBoxReceivesWhatIsSent) {
+  const Powers sent = random_powers(voxels_.sides.size(), 1);
+  const Powers received = carry(sent);
+  for (int band = 0; band < 3; ++band) EXPECT_NEAR(sum(received)[band] / sum(sent)[band], 1.0, 1e-5);
+  for (const glm::vec4& p : received) EXPECT_TRUE(glm::all(glm::greaterThanEqual(p, glm::vec4(0.0f))));
+}
+
+TEST_P(OrdinatesGl, DarknessStaysDark) {
+  for (const glm::vec4& p : carry(Powers(voxels_.sides.size(), glm::vec4(0.0f)))) EXPECT_EQ(glm::vec3(p), glm::vec3(0.0f));
+}
+
+// <b, S a> = <a, S b>, S = K / tau of the receiving side; half the sides dark, so that no sum hides the rest.
+TEST_P(OrdinatesGl, IsReciprocal) {
+  int partly = 0;
+  for (const Side& side : voxels_.sides) partly += side.coverage < 0.99f;
+  ASSERT_GT(partly, 20) << "some faces must be partly covered";
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    Powers a = random_powers(voxels_.sides.size(), 10 + seed);
+    Powers b = random_powers(voxels_.sides.size(), 20 + seed);
+    for (size_t i = 0; i < a.size(); ++i) {
+      if (a[i].x < 0.8f) a[i] = glm::vec4(0.0f);
+      if (b[i].x < 0.8f) b[i] = glm::vec4(0.0f);
+      if (seed == 3 && voxels_.sides[i].coverage > 0.99f) a[i] = glm::vec4(0.0f);  // from partly covered faces only
+    }
+    const Powers ka = carry(a);
+    const Powers kb = carry(b);
+    glm::dvec3 b_sa(0.0), a_sb(0.0);
+    for (size_t i = 0; i < a.size(); ++i) {
+      const double tau = double(voxels_.sides[i].coverage);
+      b_sa += glm::dvec3(b[i]) * glm::dvec3(ka[i]) / tau;
+      a_sb += glm::dvec3(a[i]) * glm::dvec3(kb[i]) / tau;
+    }
+    for (int band = 0; band < 3; ++band) EXPECT_NEAR(b_sa[band] / a_sb[band], 1.0, 1e-6);
+    RecordProperty("deviation_" + std::to_string(seed), std::to_string(1e9 * (b_sa.x / a_sb.x - 1.0)) + "e-9");
+  }
+}
+
+TEST_P(OrdinatesGl, IsLinear) {
+  const Powers a = random_powers(voxels_.sides.size(), 31);
+  const Powers b = random_powers(voxels_.sides.size(), 32);
+  Powers both(a.size());
+  for (size_t i = 0; i < a.size(); ++i) both[i] = a[i] + 2.5f * b[i];
+  const Powers ka = carry(a);
+  const Powers kb = carry(b);
+  const Powers k = carry(both);
+  for (size_t i = 0; i < a.size(); ++i) {
+    for (int band = 0; band < 3; ++band) {
+      const float expected = ka[i][band] + 2.5f * kb[i][band];
+      EXPECT_NEAR(k[i][band], expected, 3e-6f * std::max(expected, 0.1f));
+    }
+  }
+}
+
+// Every side sends the same power an area of the grid: every side must receive what its face would pass.
+TEST_P(OrdinatesGl, FurnaceIsAFixedPoint) {
+  Powers sent;
+  for (const Side& side : voxels_.sides) sent.emplace_back(side.coverage * glm::vec3(1.0f, 2.0f, 0.5f), 0.0f);
+  const Powers received = carry(sent);
+  for (size_t i = 0; i < sent.size(); ++i) {
+    for (int band = 0; band < 3; ++band) EXPECT_NEAR(received[i][band] / sent[i][band], 1.0f, 2e-5f);
+  }
+}
+
+TEST_P(OrdinatesGl, SameInputSameBytes) {
+  const Powers sent = random_powers(voxels_.sides.size(), 41);
+  EXPECT_EQ(carry(sent), carry(sent));
+}
+
+INSTANTIATE_TEST_SUITE_P(Directions, OrdinatesGl, testing::Values(8, 24, 48));
+
+}  // namespace
+}  // namespace volgi::test

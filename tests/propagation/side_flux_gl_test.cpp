@@ -1,0 +1,87 @@
+// Light in: the flux of emitters is on sides, all of it, on the sides that face as they do.
+#include "propagation/side_flux_gl.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/gl_test.h"
+#include "tests/support/volume_scenes.h"
+#include "tests/support/voxels.h"
+#include "voxel/emitter_pieces.h"
+
+namespace volgi::test {
+namespace {
+
+class SideFlux : public GlTest {
+ protected:
+  struct Result {
+    Voxels voxels;
+    std::vector<glm::vec4> emitted;
+    glm::vec3 lost;
+  };
+  Result inject(const Scene& scene, const Grid& grid) {
+    gl::PassTimer timer(context().software(), false);
+    SlicedVoxelization voxelization(grid);
+    Result r{voxelize(context(), voxelization, scene), {}, {}};
+    SideFluxGl flux;
+    flux.begin(voxelization.voxels());
+    flux.inject_emitters(voxelization.voxels(), emitter_pieces(scene, grid), timer);
+    r.emitted = flux.emitted().download<glm::vec4>(r.voxels.sides.size());
+    r.lost = flux.lost();
+    return r;
+  }
+};
+
+TEST_F(SideFlux, SumsExactlyAndFacesTheRightWay) {
+  for (glm::vec3 normal : {glm::vec3(0, -1, 0), glm::vec3(1, 1, 0), glm::vec3(-0.3f, 0.8f, 0.5f)}) {
+    for (float intensity : {1e-6f, 1.0f, 1e9f}) {
+      Scene scene;
+      const glm::vec3 radiance = intensity * glm::vec3(3.0f, 1.0f, 0.0f);
+      add_square(scene, add_material(scene, glm::vec3(0.5f), radiance), {0.05f, -0.1f, 0.02f}, normal, 0.5f);
+      const Result r = inject(scene, unit_grid(16));
+      glm::dvec3 sum(0.0);
+      for (size_t i = 0; i < r.emitted.size(); ++i) {
+        sum += glm::dvec3(r.emitted[i]);
+        if (r.emitted[i].x > 0.0f) {
+          EXPECT_GT(glm::dot(r.voxels.sides[i].normal, glm::normalize(normal)), 0.99f);
+        }
+      }
+      EXPECT_NEAR(sum.x / (glm::pi<double>() * double(radiance.x)), 1.0, 1e-5);
+      EXPECT_NEAR(sum.y / (glm::pi<double>() * double(radiance.y)), 1.0, 1e-5);
+      EXPECT_EQ(sum.z, 0.0);
+      EXPECT_EQ(r.lost, glm::vec3(0.0f));
+    }
+  }
+}
+
+// An emitter too small to block a face sends through its neighbours' sides; all of it while there are any.
+TEST_F(SideFlux, EmitterTooSmallForTheGrid) {
+  Scene scene;
+  add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), glm::vec3(0.0f), glm::vec3(1.0f));
+  add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.97f, 0.01f}, {0.0f, -1.0f, 0.0f}, 0.02f);
+  const Result r = inject(scene, unit_grid(8));
+  double sum = 0.0;
+  for (size_t i = 0; i < r.emitted.size(); ++i) {
+    sum += double(r.emitted[i].x);
+    if (r.emitted[i].x > 0.0f) {
+      EXPECT_LT(r.voxels.sides[i].normal.y, -0.9f);
+    }
+  }
+  EXPECT_NEAR(sum / (glm::pi<double>() * 100.0 * 0.0016), 1.0, 1e-5);
+  EXPECT_EQ(r.lost, glm::vec3(0.0f));
+}
+
+// Radiosity of sides and injected flux are two roads to the same power.
+TEST_F(SideFlux, FluxIsAreaTimesRadiosity) {
+  Scene scene;
+  add_sphere_inside(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(1.0f)), glm::vec3(0.0f), 0.8f, 16);
+  const Result r = inject(scene, unit_grid(16));
+  double flux = 0.0, sides = 0.0;
+  for (size_t i = 0; i < r.emitted.size(); ++i) {
+    flux += double(r.emitted[i].x);
+    sides += double(r.voxels.sides[i].area_m2 * r.voxels.sides[i].radiosity.x);
+  }
+  EXPECT_NEAR(sides / flux, 1.0, 0.012);
+}
+
+}  // namespace
+}  // namespace volgi::test
