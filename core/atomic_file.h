@@ -7,6 +7,7 @@ namespace volgi {
 /// Writes TARGET so that a killed run never leaves half a file: `write` gets a temporary name beside the target (same
 /// extension), which is renamed over the target when `write` returns and removed when it throws.
 /// @throws Error(cannot_write) if the folder does not exist or cannot be written, naming the path.
-void write_atomically(const std::filesystem::path& target, const std::function<void(const std::filesystem::path&)>& write);
+void write_atomically(const std::filesystem::path& target,
+                      const std::function<void(const std::filesystem::path&)>& write);
 
 }  // namespace volgi

@@ -9,15 +9,16 @@ struct Camera {
   enum class Kind { perspective, orthographic };
   std::string name;
   Kind kind = Kind::perspective;
-  float yfov_rad = 0.7f;   // perspective
-  float ymag = 1.0f;       // orthographic: half the height of the view [m]
-  float znear = 0.05f;     // [m]
-  float zfar = 1000.0f;    // [m]; glTF's infinite far plane becomes a finite one around the scene's bounds
+  float yfov_rad = 0.7f;              // perspective
+  float ymag = 1.0f;                  // orthographic: half the height of the view [m]
+  float znear = 0.05f;                // [m]
+  float zfar = 1000.0f;               // [m]; glTF's infinite far plane becomes a finite one around the scene's bounds
   glm::mat4 world_from_camera{1.0f};  // in the scene's centred frame (Scene::world_origin)
 };
 
 /// World-space ray through the picture position (x,y) in pixels, (0,0) the top left corner; the centre of the first
-/// pixel is (0.5, 0.5). `direction` has length 1. For an orthographic camera the origin moves and the direction does not.
+/// pixel is (0.5, 0.5). `direction` has length 1. For an orthographic camera the origin moves and the direction does
+/// not.
 struct CameraRay {
   glm::vec3 origin;
   glm::vec3 direction;

@@ -35,8 +35,8 @@ struct ChannelImage {
   /// Three channels PREFIX + "R","G","B" (or "X","Y","Z"), e.g. prefix "" or "direct." or "noise.".
   /// @returns false (and leaves `out` alone) when one is missing.
   bool rgb(std::string_view prefix, Image& out) const;
-  void add_rgb(std::string_view prefix, const Image& image);              // PREFIX.R, .G, .B
-  void add_xyz(std::string_view prefix, const Image& image);              // PREFIX.X, .Y, .Z
+  void add_rgb(std::string_view prefix, const Image& image);  // PREFIX.R, .G, .B
+  void add_xyz(std::string_view prefix, const Image& image);  // PREFIX.X, .Y, .Z
 };
 
 /// @throws Error(bad_input) with the path when the file is missing or not an EXR.

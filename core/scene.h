@@ -24,8 +24,8 @@ struct Sampler {
   Wrap wrap_s = Wrap::repeat;
   Wrap wrap_t = Wrap::repeat;
   bool magnify_nearest = false;
-  bool minify_nearest = false;   // nearest within a level
-  bool mipmap = true;            // any of the *_MIPMAP_* modes, or no mode given
+  bool minify_nearest = false;  // nearest within a level
+  bool mipmap = true;           // any of the *_MIPMAP_* modes, or no mode given
   bool mipmap_nearest = false;
 };
 
@@ -36,8 +36,8 @@ struct Texture {
 
 /// Use of a texture by a material. uv = uv_from_texcoord * (texcoord, 1): KHR_texture_transform, identity without it.
 struct TextureUse {
-  int texture = -1;   // index into Scene::textures, -1 for none
-  int texcoord = 0;   // 0 or 1
+  int texture = -1;  // index into Scene::textures, -1 for none
+  int texcoord = 0;  // 0 or 1
   glm::mat3 uv_from_texcoord{1.0f};
 };
 
@@ -46,14 +46,14 @@ enum class AlphaMode { opaque, mask, blend };
 struct Material {
   std::string name;
   glm::vec4 base_color_factor{1.0f};
-  TextureUse base_color;            // sRGB
-  float metallic_factor = 1.0f;     // glTF's default
-  TextureUse metallic;              // linear, blue channel
+  TextureUse base_color;              // sRGB
+  float metallic_factor = 1.0f;       // glTF's default
+  TextureUse metallic;                // linear, blue channel
   glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
-  TextureUse emissive;              // sRGB
+  TextureUse emissive;                // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
-  bool double_sided = false;        // matters for emission only: every triangle blocks and reflects on both sides
+  bool double_sided = false;  // matters for emission only: every triangle blocks and reflects on both sides
 
   bool is_emissive() const { return emissive_radiance != glm::vec3(0.0f); }
 };
@@ -64,11 +64,11 @@ struct Material {
 struct Mesh {
   std::string name;
   int material = 0;
-  std::uint32_t object_id = 0;      // 1 + index of the glTF node; pixels without geometry have id 0
+  std::uint32_t object_id = 0;  // 1 + index of the glTF node; pixels without geometry have id 0
   std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;   // unit length
+  std::vector<glm::vec3> normals;  // unit length
   std::array<std::vector<glm::vec2>, 2> uv;
-  std::vector<glm::vec4> colors;    // linear COLOR_0
+  std::vector<glm::vec4> colors;  // linear COLOR_0
   std::vector<glm::uvec3> triangles;
 };
 
@@ -82,22 +82,22 @@ struct Light {
   glm::vec3 intensity{0.0f};               // color · intensity: radiant intensity [W/sr], or irradiance for a sun
   float inner_cone_rad = 0.0f;
   float outer_cone_rad = 0.785398163f;
-  float range_m = 0.0f;                    // 0: unlimited
+  float range_m = 0.0f;  // 0: unlimited
 };
 
 /// A scene at one instant: world-space triangles, materials, lights, cameras. Everything in float is relative to
 /// `world_origin`, which was subtracted in double.
 struct Scene {
-  std::string name;                  // file stem
+  std::string name;  // file stem
   std::filesystem::path path;
   glm::dvec3 world_origin{0.0};
   std::vector<Mesh> meshes;
-  std::vector<Material> materials;   // never empty: meshes without one use a default material
+  std::vector<Material> materials;  // never empty: meshes without one use a default material
   std::vector<TextureImage> images;
   std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
-  glm::vec3 bounds_min{0.0f};        // of all triangles; both zero when there are none
+  glm::vec3 bounds_min{0.0f};  // of all triangles; both zero when there are none
   glm::vec3 bounds_max{0.0f};
 
   size_t triangle_count() const;

@@ -31,7 +31,7 @@ Polygon clip(const Polygon& in, int axis, float bound, float sign) {
   Polygon out;
   for (int i = 0; i < in.count; ++i) {
     const Corner& a = in.corners[size_t(i)];
-    const Corner& b = in.corners[size_t((i + 1) % in.count)];
+    const Corner& b = in.corners[(size_t(i) + 1) % size_t(in.count)];
     float da = sign * (a.cell[axis] - bound);
     float db = sign * (b.cell[axis] - bound);
     if (da >= 0.0f) out.add(a);
@@ -48,7 +48,7 @@ float double_uv_area(const Polygon& p) {
   float sum = 0.0f;
   for (int i = 1; i + 1 < p.count; ++i) {
     glm::vec2 a = p.corners[size_t(i)].uv - p.corners[0].uv;
-    glm::vec2 b = p.corners[size_t(i + 1)].uv - p.corners[0].uv;
+    glm::vec2 b = p.corners[size_t(i) + 1].uv - p.corners[0].uv;
     sum += a.x * b.y - a.y * b.x;
   }
   return std::abs(sum);
@@ -60,7 +60,7 @@ glm::vec2 uv_centroid(const Polygon& p) {
   for (int i = 1; i + 1 < p.count; ++i) {
     glm::vec2 o = p.corners[0].uv;
     glm::vec2 a = p.corners[size_t(i)].uv;
-    glm::vec2 b = p.corners[size_t(i + 1)].uv;
+    glm::vec2 b = p.corners[size_t(i) + 1].uv;
     float area = std::abs((a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x));
     sum += area * (o + a + b) / 3.0f;
     weight += area;

@@ -8,6 +8,14 @@ layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 
 const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
 
+// Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, as a floor
+// does under a carpet: by more than the two planes can part within half a cell when they are one bent surface.
+bool behind_side(Side side, vec3 normal, int axis, float depth) {
+  float cosine = clamp(dot(side.normal, normal), 0.1, 1.0);
+  float bend = sqrt(1.0 - cosine * cosine) / cosine;
+  return (side.depth - depth) * side.normal[axis] > 0.02 + 0.75 * bend;
+}
+
 // The side of `axis` that a surface point (cell units) belongs to: the surface, continued as a plane to the centre of the
 // point's column, blocks one face there. Where the surface ends before the centre, the nearest columns are asked.
 // front: 1 or 0 for sides that show a triangle's front or back only, -1 for any.
@@ -31,7 +39,7 @@ int find_side(vec3 point, vec3 normal, int axis, float least_cosine, int front) 
       int face = 2 * axis + (positive ? 0 : 1);
       if (!has_side(own_sides, face)) continue;
       int index = int(side_index(own_sides, face));
-      if (front >= 0 && sides[index].front != front) continue;
+      if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
       if (dot(sides[index].normal, normal) >= least_cosine) return index;
     }
   }

@@ -23,9 +23,10 @@ class BouncesGlTest : public GlTest {
     add_square(scene_, add_material(scene_, glm::vec3(0.2f), glm::vec3(5.0f, 4.0f, 3.0f)), {0.0f, 0.9f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.3f);
     voxels_ = std::make_unique<SlicedVoxelization>(unit_grid(10));
     sides_ = voxelize(context(), *voxels_, scene_).sides.size();
-    flux_.begin(voxels_->voxels());
+    flux_ = std::make_unique<SideFluxGl>();
+    flux_->begin(voxels_->voxels());
     gl::PassTimer timer(context().software(), false);
-    flux_.inject_emitters(voxels_->voxels(), emitter_pieces(scene_, voxels_->voxels().grid), timer);
+    flux_->inject_emitters(voxels_->voxels(), emitter_pieces(scene_, voxels_->voxels().grid), timer);
   }
 
   struct Result {
@@ -35,7 +36,7 @@ class BouncesGlTest : public GlTest {
   Result run(std::unique_ptr<TransportGl> transport, const BounceRules& rules) {
     gl::PassTimer timer(context().software(), false);
     BouncesGl bounces(std::move(transport));
-    const BounceReport report = bounces.run(voxels_->voxels(), flux_, true, rules, timer);
+    const BounceReport report = bounces.run(voxels_->voxels(), *flux_, true, rules, timer);
     return {report, bounces.received_direct().download<glm::vec4>(sides_), bounces.received_indirect().download<glm::vec4>(sides_)};
   }
   std::unique_ptr<TransportGl> ordinates() { return std::make_unique<OrdinatesTransportGl>(unit_grid(10), 24); }
@@ -67,7 +68,7 @@ class BouncesGlTest : public GlTest {
 
   Scene scene_;
   std::unique_ptr<SlicedVoxelization> voxels_;
-  SideFluxGl flux_;
+  std::unique_ptr<SideFluxGl> flux_;  // needs the context of SetUp
   size_t sides_ = 0;
 };
 
@@ -85,7 +86,7 @@ TEST_F(BouncesGlTest, AllThatIsEmittedIsAbsorbed) {
   rules.largest_albedo = 0.8f;
   const Result r = run(ordinates(), rules);
   const std::vector<Side> sides = voxels_->voxels().download_sides();
-  const auto flux = flux_.emitted().download<glm::vec4>(sides_);
+  const auto flux = flux_->emitted().download<glm::vec4>(sides_);
   glm::dvec3 emitted(0.0), absorbed(0.0);
   for (size_t i = 0; i < sides_; ++i) {
     const Side& s = sides[i];

@@ -1,0 +1,143 @@
+// Tilted surfaces where a furnace cannot tell a wrong rule from a right one (accuracy, "tilt"): a sphere's cavity, whose
+// indirect irradiance is the same everywhere whatever the source, and black walls, which return nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "propagation/bounces_gl.h"
+#include "propagation/side_irradiance_gl.h"
+#include "propagation/transport_conservative_gl.h"
+#include "propagation/transport_ordinates_gl.h"
+#include "screen/frame.h"
+#include "screen/inject_reflective_shadow_map.h"
+#include "tests/support/gl_test.h"
+#include "tests/support/volume_scenes.h"
+#include "tests/support/voxels.h"
+#include "voxel/emitter_pieces.h"
+
+namespace volgi::test {
+namespace {
+
+struct Solved {
+  std::vector<Side> sides;
+  std::vector<glm::vec4> received_direct, received_indirect, direct, indirect;
+};
+
+class Cavity : public GlTest {
+ protected:
+  /// The volume's part of a frame, as screen/frame.cpp runs it.
+  static Solved solve(const Scene& scene, const Grid& grid, screen::Scheme scheme, float largest_albedo) {
+    gl::PassTimer timer(context().software(), false);
+    const gl::SceneBuffers buffers(scene);
+    screen::ReflectiveShadowMap maps;
+    maps.run(buffers, scene, timer);
+    SlicedVoxelization voxelization(grid);
+    voxelization.run(buffers, timer);
+    const VoxelGridGl& voxels = voxelization.voxels();
+    const std::vector<FluxSample> pieces = emitter_pieces(scene, grid);
+    SideFluxGl flux;
+    flux.begin(voxels);
+    flux.inject_emitters(voxels, pieces, timer);
+    screen::InjectReflectiveShadowMap().run(voxels, maps, scene, flux, timer);
+    std::unique_ptr<TransportGl> transport = std::make_unique<OrdinatesTransportGl>(grid, 48);
+    if (scheme == screen::Scheme::conservative) transport = std::make_unique<ConservativeTransportGl>(grid);
+    BouncesGl bounces(std::move(transport));
+    BounceRules rules;
+    rules.largest_albedo = largest_albedo;
+    bounces.run(voxels, flux, !pieces.empty(), rules, timer);
+    SideIrradianceGl irradiance;
+    irradiance.run(voxels, flux, bounces, timer);
+    Solved s{voxels.download_sides(), {}, {}, {}, {}};
+    const size_t n = s.sides.size();
+    s.received_direct = bounces.received_direct().download<glm::vec4>(n);
+    s.received_indirect = bounces.received_indirect().download<glm::vec4>(n);
+    s.direct = irradiance.direct().download<glm::vec4>(n);
+    s.indirect = irradiance.indirect().download<glm::vec4>(n);
+    return s;
+  }
+
+  /// A spot in the middle of a sphere lights a twelfth of it: mean E of all reflected light over the exact rho Phi /
+  /// ((1-rho) area).
+  static double sphere_ratio(float albedo, screen::Scheme scheme, int cells) {
+    Scene scene;
+    add_sphere_inside(scene, add_material(scene, glm::vec3(albedo)), glm::vec3(0.0f), 0.9f, 24);
+    scene.lights.push_back(spot_light(glm::vec3(0.01f, 0.02f, 0.0f), {1.0f, -0.6f, 0.4f}, 32.0f, 33.0f, glm::vec3(2.0f)));
+    const Solved s = solve(scene, unit_grid(cells), scheme, albedo);
+    double sum = 0.0, areas = 0.0;
+    for (size_t i = 0; i < s.sides.size(); ++i) {
+      const glm::vec3 c = glm::vec3(shared::cell_coord(unit_grid(cells), s.sides[i].cell)) + 0.5f - 0.5f * float(cells);
+      if (glm::dot(s.sides[i].normal, c) > 0.0f) continue;  // seen from outside
+      sum += double(s.sides[i].area_m2 * s.indirect[i].x);
+      areas += double(s.sides[i].area_m2);
+    }
+    const double outer = std::cos(glm::radians(33.0)), inner = std::cos(glm::radians(32.0));
+    const double flux = 2.0 * 2.0 * glm::pi<double>() * ((1.0 - inner) + (inner - outer) / 3.0);
+    const double exact = double(albedo) * flux / ((1.0 - double(albedo)) * area(scene));
+    return sum / areas / exact;
+  }
+};
+
+TEST_F(Cavity, SphereOrdinates) {
+  for (float albedo : {0.3f, 0.7f}) {
+    const double ratio = sphere_ratio(albedo, screen::Scheme::ordinates, 24);
+    EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
+    RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(ratio));
+  }
+}
+
+TEST_F(Cavity, SphereConservative) {
+  for (float albedo : {0.3f, 0.7f}) {
+    const double ratio = sphere_ratio(albedo, screen::Scheme::conservative, 16);
+    EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
+    RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(ratio));
+  }
+}
+
+// Black walls that glow with L_e, and black between them: a wall through the whole box, and a plate. Nothing comes back from
+// anywhere, and both see L_e from all directions, so that E = pi L_e. Too much is measured: of what a black staircase sends
+// back to its own steps, nothing, the schemes let it take a part from beyond; a plate draws light around its rim as well.
+struct BlackCase {
+  screen::Scheme scheme;
+  int cells;
+  float half_edge;
+  double most_excess;  // 1.5 times the worst measured
+};
+
+class BlackSurface : public Cavity, public testing::WithParamInterface<BlackCase> {};
+
+TEST_P(BlackSurface, ReturnsNothing) {
+  const BlackCase& c = GetParam();
+  for (glm::vec3 normal : {glm::vec3(1, 1, 0), glm::vec3(1, 2, -1)}) {
+    Scene scene;
+    add_box_inside(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
+    add_square(scene, add_material(scene, glm::vec3(0.0f)), glm::vec3(0.05f, -0.04f, 0.03f), normal, c.half_edge);
+    const Solved s = solve(scene, unit_grid(c.cells), c.scheme, 0.0f);
+    double irradiance = 0.0, black_area = 0.0, sent = 0.0, received = 0.0;
+    for (size_t i = 0; i < s.sides.size(); ++i) {
+      ASSERT_EQ(glm::vec3(s.received_indirect[i]), glm::vec3(0.0f));
+      sent += double(s.sides[i].radiosity.x * s.sides[i].face_m2);
+      received += double(s.received_direct[i].x);
+      if (std::abs(glm::dot(s.sides[i].normal, glm::normalize(normal))) < 0.99f) continue;
+      irradiance += double(s.sides[i].area_m2 * s.direct[i].x);
+      black_area += double(s.sides[i].area_m2);
+    }
+    EXPECT_NEAR(received / sent, 1.0, c.scheme == screen::Scheme::ordinates ? 0.01 : 0.02);
+    const double ratio = irradiance / black_area / glm::pi<double>();
+    EXPECT_GT(ratio, 0.97);
+    EXPECT_LT(ratio, 1.0 + c.most_excess);
+    RecordProperty("ratio_" + std::to_string(int(normal.y)), std::to_string(ratio) + " sent " + std::to_string(received / sent));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemes, BlackSurface,
+                         testing::Values(BlackCase{screen::Scheme::ordinates, 24, 4.0f, 0.07},
+                                         BlackCase{screen::Scheme::ordinates, 24, 0.5f, 0.13},
+                                         BlackCase{screen::Scheme::conservative, 16, 4.0f, 0.13},
+                                         BlackCase{screen::Scheme::conservative, 16, 0.5f, 0.95}),
+                         [](const auto& test) {
+                           return std::string(test.param.scheme == screen::Scheme::ordinates ? "Ordinates" : "Conservative") +
+                                  (test.param.half_edge > 1.0f ? "Wall" : "Plate");
+                         });
+
+}  // namespace
+}  // namespace volgi::test

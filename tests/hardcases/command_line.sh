@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Errors of the command line: exactly one line on stderr that names the culprit, the documented exit code, and no file
+# left behind, not even a temporary one.
+#   command_line.sh VOLGI SOURCE_FOLDER [gl]    gl: the program has the commands that need OpenGL
+set -u
+volgi=$1
+scene=$2/data/cornell.glb
+gl=${3-}
+logs=$(mktemp -d)
+work=$(mktemp -d)
+trap 'rm -rf "$logs" "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+# refuse CODE CULPRIT ARGUMENT...
+refuse() {
+  local code=$1 culprit=$2 before status lines
+  shift 2
+  before=$(find . | sort)
+  timeout 60 "$volgi" "$@" > "$logs/out" 2> "$logs/err"
+  status=$?
+  lines=$(wc -l < "$logs/err")
+  find . | sort > "$logs/files"
+  if ((status == code && lines == 1)) && grep -qF -- "$culprit" "$logs/err" && [[ $before == "$(< "$logs/files")" ]]; then
+    return
+  fi
+  failures=$((failures + 1))
+  printf 'volgi %s\n  exit code %d, expected %d; %d lines on stderr, expected one that names "%s":\n' \
+    "$*" "$status" "$code" "$lines" "$culprit"
+  sed 's/^/  | /' "$logs/err"
+  diff <(echo "$before") "$logs/files" | sed 's/^/  files: /'
+}
+
+echo 'not a scene' > text.glb
+head -c 3000 "$scene" > truncated.glb
+head -c 10 "$scene" > header.glb
+: > empty.glb
+echo '{"asset":{"version":"2.0"},"scenes":[{}' > broken.gltf
+echo '{"asset":{"version":"1.0"}}' > old.gltf
+cat > texture.gltf << 'EOF'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+ "images":[{"uri":"brick.png"}],"textures":[{"source":0}],
+ "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]},
+              {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],
+ "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],
+ "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"}]}
+EOF
+mkdir folder.exr
+
+commands=(reference)
+[[ -n $gl ]] && commands+=(render)
+for command in "${commands[@]}"; do
+  quick=(-o out.exr --size 8x8)
+  [[ $command == reference ]] && quick+=(--spp 2)
+  for file in text.glb truncated.glb header.glb empty.glb broken.gltf old.gltf missing.glb; do
+    refuse 3 "$file" "$command" "$file" "${quick[@]}"
+  done
+  refuse 3 brick.png "$command" texture.gltf "${quick[@]}"
+  refuse 6 /proc/none "$command" "$scene" -o /proc/none/out.exr --size 8x8
+  refuse 6 none/ "$command" "$scene" -o none/out.exr --size 8x8
+  refuse 6 text.glb/ "$command" "$scene" -o text.glb/out.exr --size 8x8
+  refuse 6 folder.exr "$command" "$scene" -o folder.exr --size 8x8
+  refuse 2 out.jpg "$command" "$scene" -o out.jpg --size 8x8
+  refuse 2 "--camera 7" "$command" "$scene" "${quick[@]}" --camera 7
+  refuse 2 --camera "$command" "$scene" "${quick[@]}" --camera -1
+  refuse 2 --nonsense "$command" "$scene" "${quick[@]}" --nonsense
+  refuse 2 --eye "$command" "$scene" "${quick[@]}" --eye 1,2 --target 0,0,0
+  refuse 2 --target "$command" "$scene" "${quick[@]}" --eye 1,2,3
+  refuse 2 --light "$command" "$scene" "${quick[@]}" --light sideways
+  refuse 2 --bounces "$command" "$scene" "${quick[@]}" --bounces -1
+  for size in 0x8 8 8x 8x8x8 -8x8 8x99999 eightxeight 8X8.5; do
+    refuse 2 "$size" "$command" "$scene" -o out.exr "--size=$size"
+  done
+  refuse 2 SCENE "$command"
+done
+if [[ -n $gl ]]; then
+  refuse 2 --scheme render "$scene" -o out.exr --scheme magic
+  refuse 2 --gi render "$scene" -o out.exr --gi magic
+  refuse 2 --grid render "$scene" -o out.exr --grid 0
+  refuse 2 --grid render "$scene" -o out.exr --grid many
+  refuse 2 --directions render "$scene" -o out.exr --directions 9
+  refuse 2 --directions render "$scene" -o out.exr --scheme conservative --directions 8
+  refuse 2 nonsense=1 render "$scene" -o out.exr --set nonsense=1
+  refuse 2 grid.shift=up render "$scene" -o out.exr --set grid.shift=up
+  refuse 2 grid.shift=9 render "$scene" -o out.exr --set grid.shift=9
+  refuse 2 grid.shift render "$scene" -o out.exr --set grid.shift
+  refuse 2 "device 99" render "$scene" -o out.exr --device 99
+  refuse 6 none/ render "$scene" -o out.exr --size 8x8 --stats none/stats.json
+fi
+refuse 2 subcommand magic
+refuse 3 missing.exr compare missing.exr missing.exr
+refuse 3 text.glb compare text.glb text.glb
+
+((failures == 0)) || printf '%d commands did not fail as they should\n' "$failures"
+exit $((failures > 0))
