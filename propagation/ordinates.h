@@ -13,8 +13,8 @@ struct OrdinateSet {
   float t = 0.0f;
 };
 
-/// 8: (1,1,1)/sqrt3. 24: permutations of (0.267, 0.682, 0.682), normalised. 48: level-symmetric S6 (Lewis and Miller
-/// 1984, table 4-1). Never a direction along an axis: its light would not spread (techniques).
+/// 8: (1,1,1)/sqrt3. 24: permutations of (0.267, 0.682, 0.682), normalised. 48 and 80: level-symmetric S6
+/// and S8 (Lewis and Miller 1984, table 4-1). Never a direction along an axis: its light would not spread (techniques).
 /// @throws Error(usage) for another number, naming these.
 OrdinateSet ordinate_set(int directions);
 

@@ -70,7 +70,7 @@ void FrameCommandOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"ordinates", "conservative"}))
       ->capture_default_str();
   command.add_option("--directions", directions, "directions of 'ordinates' (24 up to 16 cells, 48 above)")
-      ->check(CLI::IsMember({8, 24, 48}));
+      ->check(CLI::IsMember({8, 24, 48, 80}));
   command
       .add_option("--iterations", iterations,
                   "passes over the volume: for each order with --bounces, else in all with reflections in flight "

@@ -68,7 +68,8 @@ TEST_F(Invariance, Scale) {
     const Image ref = render(context(), scene, scene.cameras.at(0), options()).image;
     for (float s : {1e-3f, 1e3f}) {
       const Scene other = scaled(scene, s);
-      EXPECT_LT(rmse_percent(render(context(), other, other.cameras.at(0), options()).image, ref), 0.1) << name << " x " << s;
+      EXPECT_LT(rmse_percent(render(context(), other, other.cameras.at(0), options()).image, ref), 0.1)
+          << name << " x " << s;
     }
   }
 }
@@ -127,17 +128,19 @@ TEST_F(Invariance, Range) {
           for (int band = 0; band < 3; ++band) {
             ASSERT_TRUE(std::isfinite(test.pixels[i][band]));
             const double r = double(ref.pixels[i][band]);
-            worst = std::max(worst, std::abs(double(test.pixels[i][band]) / double(factor) - r) / std::max(r, 0.01 * mean));
+            worst =
+                std::max(worst, std::abs(double(test.pixels[i][band]) / double(factor) - r) / std::max(r, 0.01 * mean));
           }
         }
-        EXPECT_LT(worst, 1e-3) << name << " x " << factor << (scheme == screen::Scheme::ordinates ? " ordinates" : " conservative");
+        EXPECT_LT(worst, 1e-3) << name << " x " << factor
+                               << (scheme == screen::Scheme::ordinates ? " ordinates" : " conservative");
       }
     }
   }
 }
 
-// Lights superpose: plain bounces of a linear operator. On tilted surfaces irradiance is clamped at zero where the staircase
-// noise of a lit surface exceeds it, so that cornell's turned boxes keep it from being exact.
+// Lights superpose: plain bounces of a linear operator. On tilted surfaces irradiance is clamped at zero where the
+// staircase noise of a lit surface exceeds it, so that cornell's turned boxes keep it from being exact.
 TEST_F(Invariance, SumOfLights) {
   for (auto [name, limit] : {std::pair("convex_box", 0.1), {"cornell", 0.5}}) {
     Scene scene = load_scene(kData / (std::string(name) + ".glb"));

@@ -18,7 +18,8 @@ TEST_F(Leak, ThinWallConservative) {
   const Camera& camera = scene.cameras.at(0);
   const glm::ivec2 size(96, 96);
   const EmbreeScene rays(scene);
-  for (auto [cells, shift, limit] : {std::tuple(16, 0.0f, 0.005), {24, 0.0f, 0.005}, {16, 0.25f, 0.02}, {16, 0.5f, 0.02}}) {
+  for (auto [cells, shift, limit] :
+       {std::tuple(16, 0.0f, 0.005), {24, 0.0f, 0.005}, {16, 0.25f, 0.02}, {16, 0.5f, 0.02}}) {
     screen::FrameOptions options;
     options.size = size;
     options.grid_cells = cells;
@@ -41,7 +42,8 @@ TEST_F(Leak, ThinWallConservative) {
     ASSERT_GT(darks, 1000);
     ASSERT_GT(lits, 1000);
     EXPECT_LT(dark / darks, limit * lit / lits) << cells << " cells, shifted by " << shift;
-    RecordProperty("leak_" + std::to_string(cells) + "_" + std::to_string(int(100 * shift)), std::to_string(100.0 * dark / darks * lits / lit) + " %");
+    RecordProperty("leak_" + std::to_string(cells) + "_" + std::to_string(int(100 * shift)),
+                   std::to_string(100.0 * dark / darks * lits / lit) + " %");
   }
 }
 

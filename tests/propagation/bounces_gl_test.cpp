@@ -20,7 +20,8 @@ class BouncesGlTest : public GlTest {
     if (IsSkipped()) return;
     scene_ = furnished_box();
     // An emitter under the ceiling.
-    add_square(scene_, add_material(scene_, glm::vec3(0.2f), glm::vec3(5.0f, 4.0f, 3.0f)), {0.0f, 0.9f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.3f);
+    add_square(scene_, add_material(scene_, glm::vec3(0.2f), glm::vec3(5.0f, 4.0f, 3.0f)), {0.0f, 0.9f, 0.0f},
+               {0.0f, -1.0f, 0.0f}, 0.3f);
     voxels_ = std::make_unique<SlicedVoxelization>(unit_grid(10));
     sides_ = voxelize(context(), *voxels_, scene_).sides.size();
     flux_ = std::make_unique<SideFluxGl>();
@@ -37,7 +38,8 @@ class BouncesGlTest : public GlTest {
     gl::PassTimer timer(context().software(), false);
     BouncesGl bounces(std::move(transport));
     const BounceReport report = bounces.run(voxels_->voxels(), *flux_, true, rules, timer);
-    return {report, bounces.received_direct().download<glm::vec4>(sides_), bounces.received_indirect().download<glm::vec4>(sides_)};
+    return {report, bounces.received_direct().download<glm::vec4>(sides_),
+            bounces.received_indirect().download<glm::vec4>(sides_)};
   }
   std::unique_ptr<TransportGl> ordinates() { return std::make_unique<OrdinatesTransportGl>(unit_grid(10), 24); }
   std::unique_ptr<TransportGl> conservative() { return std::make_unique<ConservativeTransportGl>(unit_grid(10)); }

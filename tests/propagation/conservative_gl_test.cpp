@@ -65,7 +65,8 @@ TEST_F(ConservativeGl, IterationsAreCounted) {
   transport.carry(gpu, from, to, rules, report);
   EXPECT_EQ(report.passes, 11);
   for (int band = 0; band < 3; ++band) {
-    EXPECT_NEAR((sum(to.download<glm::vec4>(sent.size()))[band] + double(report.left[band])) / sum(sent)[band], 1.0, 1e-5);
+    EXPECT_NEAR((sum(to.download<glm::vec4>(sent.size()))[band] + double(report.left[band])) / sum(sent)[band], 1.0,
+                1e-5);
   }
 }
 

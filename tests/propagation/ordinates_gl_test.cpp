@@ -32,7 +32,8 @@ TEST_P(OrdinatesGl, ClosedBoxReceivesWhatIsSent) {
 }
 
 TEST_P(OrdinatesGl, DarknessStaysDark) {
-  for (const glm::vec4& p : carry(Powers(voxels_.sides.size(), glm::vec4(0.0f)))) EXPECT_EQ(glm::vec3(p), glm::vec3(0.0f));
+  for (const glm::vec4& p : carry(Powers(voxels_.sides.size(), glm::vec4(0.0f))))
+    EXPECT_EQ(glm::vec3(p), glm::vec3(0.0f));
 }
 
 // <b, S a> = <a, S b>, S = K / tau of the receiving side; half the sides dark, so that no sum hides the rest.

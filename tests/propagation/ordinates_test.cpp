@@ -55,7 +55,8 @@ TEST(OrdinateSet, IsSymmetric) {
     const OrdinateSet set = ordinate_set(e.directions);
     for (size_t i = 0; i < set.directions.size(); ++i) {
       const glm::vec3 d = set.directions[i];
-      for (glm::vec3 turned : {glm::vec3(d.y, d.z, d.x), glm::vec3(d.z, d.x, d.y), glm::vec3(d.y, d.x, d.z), glm::vec3(d.x, d.z, d.y)}) {
+      for (glm::vec3 turned :
+           {glm::vec3(d.y, d.z, d.x), glm::vec3(d.z, d.x, d.y), glm::vec3(d.y, d.x, d.z), glm::vec3(d.x, d.z, d.y)}) {
         bool found = false;
         for (size_t j = 0; j < set.directions.size(); ++j) {
           found = found || (glm::distance(set.directions[j], turned) < 1e-6f && set.weights[j] == set.weights[i]);

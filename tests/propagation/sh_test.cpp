@@ -54,7 +54,8 @@ TEST(PyramidConstants, TileTheSphere) {
 TEST(PyramidPower, IsTheIntegralOfTheLobe) {
   const vec4 lobe(2.0f, 0.3f, -0.7f, 0.9f);  // times sqrt(4 pi): 00, y, z, x
   const auto radiance = [&](glm::dvec3 d) {
-    return (double(lobe.x) + std::sqrt(3.0) * (double(lobe.y) * d.y + double(lobe.z) * d.z + double(lobe.w) * d.x)) / (4.0 * kPi);
+    return (double(lobe.x) + std::sqrt(3.0) * (double(lobe.y) * d.y + double(lobe.z) * d.z + double(lobe.w) * d.x)) /
+           (4.0 * kPi);
   };
   for (int face = 0; face < 6; ++face) {
     const int axis = face >> 1;

@@ -57,7 +57,8 @@ TEST_F(SideFlux, SumsExactlyAndFacesTheRightWay) {
 TEST_F(SideFlux, EmitterTooSmallForTheGrid) {
   Scene scene;
   add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), glm::vec3(0.0f), glm::vec3(1.0f));
-  add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.97f, 0.01f}, {0.0f, -1.0f, 0.0f}, 0.02f);
+  add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.97f, 0.01f}, {0.0f, -1.0f, 0.0f},
+             0.02f);
   const Result r = inject(scene, unit_grid(8));
   double sum = 0.0;
   for (size_t i = 0; i < r.emitted.size(); ++i) {
@@ -68,6 +69,16 @@ TEST_F(SideFlux, EmitterTooSmallForTheGrid) {
   }
   EXPECT_NEAR(sum / (glm::pi<double>() * 100.0 * 0.0016), 1.0, 1e-5);
   EXPECT_EQ(r.lost, glm::vec3(0.0f));
+}
+
+// Alone in the void it has nowhere to send: the report says how much.
+TEST_F(SideFlux, WhatFindsNoSideIsReported) {
+  Scene scene;
+  add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.02f, 0.01f}, {0.0f, -1.0f, 0.0f},
+             0.005f);
+  const Result r = inject(scene, unit_grid(8));
+  EXPECT_TRUE(r.voxels.sides.empty());
+  EXPECT_NEAR(r.lost.x / (glm::pi<float>() * 100.0f * 1e-4f), 1.0f, 1e-5f);
 }
 
 // Radiosity of sides and injected flux are two roads to the same power.

@@ -10,7 +10,8 @@ namespace {
 
 const vec3 kAlbedos[] = {vec3(0.0f), vec3(0.3f, 0.5f, 0.7f), vec3(0.95f), vec3(1.0f)};
 constexpr float kFace = 0.04f;  // m^2
-const vec3 kNormals[] = {vec3(0, 1, 0), vec3(0.6f, 0, -0.8f), vec3(0.70710678f, 0.70710678f, 0), vec3(0.57735027f, -0.57735027f, 0.57735027f)};
+const vec3 kNormals[] = {vec3(0, 1, 0), vec3(0.6f, 0, -0.8f), vec3(0.70710678f, 0.70710678f, 0),
+                         vec3(0.57735027f, -0.57735027f, 0.57735027f)};
 
 TEST(Side, NetPowerIsExactOnPlanes) {
   for (const vec3& albedo : kAlbedos) {
@@ -18,7 +19,8 @@ TEST(Side, NetPowerIsExactOnPlanes) {
       const float area = kFace / staircase_factor(normal);
       const vec3 flux = area * vec3(3.0f, 0.0f, 0.2f);  // A B0
       const vec3 received(0.5f, 0.2f, 0.01f);
-      const vec3 sent = side_sent_power(flux, albedo, area, kFace) + side_returned_fraction(albedo, area, kFace) * received;
+      const vec3 sent =
+          side_sent_power(flux, albedo, area, kFace) + side_returned_fraction(albedo, area, kFace) * received;
       const vec3 irradiance = side_irradiance(received, flux, albedo, normal, area, kFace);
       const vec3 expected = flux - (vec3(1.0f) - albedo) * area * irradiance;
       for (int band = 0; band < 3; ++band) EXPECT_NEAR(sent[band] - received[band], expected[band], 1e-6f);
@@ -50,12 +52,14 @@ TEST(Side, FurnaceHoldsAtAnyTilt) {
     const vec3 received = kFace * radiosity;
     for (float area : {0.3f * kFace, kFace / 1.7320508f, kFace, 1.6f * kFace}) {
       const vec3 flux(area * 2.0f);
-      const vec3 sent = side_sent_power(flux, albedo, area, kFace) + side_returned_fraction(albedo, area, kFace) * received;
+      const vec3 sent =
+          side_sent_power(flux, albedo, area, kFace) + side_returned_fraction(albedo, area, kFace) * received;
       EXPECT_NEAR(sent.x / received.x, 1.0f, 2e-6f);
     }
     for (const vec3& normal : kNormals) {
       const float area = kFace / staircase_factor(normal);
-      EXPECT_NEAR(side_irradiance(received, vec3(area * 2.0f), albedo, normal, area, kFace).x / radiosity.x, 1.0f, 3e-6f);
+      EXPECT_NEAR(side_irradiance(received, vec3(area * 2.0f), albedo, normal, area, kFace).x / radiosity.x, 1.0f,
+                  3e-6f);
     }
   }
 }

@@ -35,7 +35,8 @@ inline Powers random_powers(size_t count, unsigned seed) {
   return p;
 }
 
-inline Powers carry(TransportGl& transport, const VoxelGridGl& voxels, const Powers& sent, BounceReport* report = nullptr) {
+inline Powers carry(TransportGl& transport, const VoxelGridGl& voxels, const Powers& sent,
+                    BounceReport* report = nullptr) {
   Powers padded = sent;
   padded.resize(voxels.side_capacity, glm::vec4(0.0f));
   const gl::Buffer from(padded);

@@ -84,7 +84,8 @@ class TurnedGl : public GlTest {
       const Powers received = carry(*transport, upload(t.voxels), turned_sent);
       float worst = 0.0f;
       for (size_t i = 0; i < received.size(); ++i) {
-        for (int band = 0; band < 3; ++band) worst = std::max(worst, std::abs(received[i][band] - expected[t.from[i]][band]));
+        for (int band = 0; band < 3; ++band)
+          worst = std::max(worst, std::abs(received[i][band] - expected[t.from[i]][band]));
       }
       EXPECT_LT(worst, 1e-5f * most) << "about axis " << axis;
     }

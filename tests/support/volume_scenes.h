@@ -42,7 +42,8 @@ inline Mesh& add_square(Scene& scene, int material, glm::vec3 centre, glm::vec3 
 }
 
 /// Box of half edges `half` around `centre`, turned by `turn`, six quads whose fronts look inwards.
-inline void add_box_inside(Scene& scene, int material, glm::vec3 centre, glm::vec3 half, const glm::mat3& turn = glm::mat3(1.0f)) {
+inline void add_box_inside(Scene& scene, int material, glm::vec3 centre, glm::vec3 half,
+                           const glm::mat3& turn = glm::mat3(1.0f)) {
   for (int axis = 0; axis < 3; ++axis) {
     for (float side : {-1.0f, 1.0f}) {
       glm::vec3 n(0.0f), a(0.0f), b(0.0f);
@@ -119,7 +120,8 @@ inline Light point_light(glm::vec3 position, glm::vec3 intensity) {
   return light;
 }
 
-inline Light spot_light(glm::vec3 position, glm::vec3 direction, float inner_deg, float outer_deg, glm::vec3 intensity) {
+inline Light spot_light(glm::vec3 position, glm::vec3 direction, float inner_deg, float outer_deg,
+                        glm::vec3 intensity) {
   Light light = point_light(position, intensity);
   light.type = Light::Type::spot;
   light.direction = glm::normalize(direction);

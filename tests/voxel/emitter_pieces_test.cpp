@@ -27,7 +27,8 @@ void expect_exact(const Scene& scene, const Grid& grid, double sides = 1.0) {
 
 TEST(EmitterPieces, TriangleInsideOneCell) {
   Scene scene;
-  Mesh& mesh = add_quad(scene, add_material(scene, glm::vec3(0.0f), kRadiance), {0.01f, 0.02f, 0.01f}, {0.02f, 0, 0}, {0, 0.01f, 0.015f});
+  Mesh& mesh = add_quad(scene, add_material(scene, glm::vec3(0.0f), kRadiance), {0.01f, 0.02f, 0.01f}, {0.02f, 0, 0},
+                        {0, 0.01f, 0.015f});
   mesh.triangles.resize(1);
   EXPECT_EQ(emitter_pieces(scene, unit_grid(8)).size(), 1u);
   expect_exact(scene, unit_grid(8));
@@ -35,7 +36,8 @@ TEST(EmitterPieces, TriangleInsideOneCell) {
 
 TEST(EmitterPieces, QuadOverManyColumns) {
   Scene scene;
-  add_quad(scene, add_material(scene, glm::vec3(0.0f), kRadiance), {-0.93f, 0.31f, -0.87f}, {0, 0, 1.71f}, {1.8f, 0, 0});
+  add_quad(scene, add_material(scene, glm::vec3(0.0f), kRadiance), {-0.93f, 0.31f, -0.87f}, {0, 0, 1.71f},
+           {1.8f, 0, 0});
   const Grid grid = unit_grid(32);
   expect_exact(scene, grid);
   for (const FluxSample& p : emitter_pieces(scene, grid)) {
@@ -81,7 +83,8 @@ TEST(EmitterPieces, NothingFromWhatDoesNotEmit) {
   add_square(scene, add_material(scene, glm::vec3(0.9f)), glm::vec3(0.0f), {0.0f, 1.0f, 0.0f}, 0.6f);
   EXPECT_TRUE(emitter_pieces(scene, unit_grid(16)).empty());
   Scene flat;  // no area, no light
-  add_quad(flat, add_material(flat, glm::vec3(0.9f), kRadiance), glm::vec3(0.0f), {1.0f, 0.0f, 0.0f}, {0.5f, 0.0f, 0.0f});
+  add_quad(flat, add_material(flat, glm::vec3(0.9f), kRadiance), glm::vec3(0.0f), {1.0f, 0.0f, 0.0f},
+           {0.5f, 0.0f, 0.0f});
   EXPECT_TRUE(emitter_pieces(flat, unit_grid(16)).empty());
 }
 

@@ -55,7 +55,8 @@ TEST_F(SlicedVoxels, SidesFaceTheCellThatSeesThem) {
     EXPECT_GT(side.area_m2, 0.0f);
     // The surface lies between the centre of the cell and that of its neighbour.
     const glm::ivec3 c = shared::cell_coord(v.grid, side.cell);
-    const float ahead = (side.depth - float(c[shared::face_axis(side.face)]) - 0.5f) * float(shared::face_sign(side.face));
+    const float ahead =
+        (side.depth - float(c[shared::face_axis(side.face)]) - 0.5f) * float(shared::face_sign(side.face));
     EXPECT_GT(ahead, -0.01f);
     EXPECT_LT(ahead, 1.01f);
     EXPECT_EQ(shared::side_index(v.cell(c), side.face), i);
@@ -204,7 +205,8 @@ TEST_F(SlicedVoxels, TexturedWallHasTheMeanOfItsTexture) {
   glm::dvec3 mean(0.0), sides(0.0);
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) {
-      mean += glm::dvec3(sample_texture(scene, 0, (glm::vec2(x, y) + 0.5f) / 64.0f, true)) * glm::dvec3(1.0, 0.5, 1.0) / 4096.0;
+      mean += glm::dvec3(sample_texture(scene, 0, (glm::vec2(x, y) + 0.5f) / 64.0f, true)) * glm::dvec3(1.0, 0.5, 1.0) /
+              4096.0;
     }
   }
   const Voxels v = voxelize(context(), scene, unit_grid(16));
@@ -233,7 +235,8 @@ TEST_F(SlicedVoxels, SameInputSameBytes) {
   Scene scene;
   add_sphere_inside(scene, add_material(scene, kRed), {0.0f, 0.1f, 0.0f}, 0.8f, 24);
   add_square(scene, add_material(scene, kBlue), {0.3f, 0.0f, 0.0f}, {1.0f, 1.0f, 0.3f}, 0.7f);
-  add_square(scene, add_material(scene, glm::vec3(0.1f)), {0.3f, 0.0f, 0.0f}, {1.0f, 1.0f, 0.3f}, 0.7f);  // the same place
+  add_square(scene, add_material(scene, glm::vec3(0.1f)), {0.3f, 0.0f, 0.0f}, {1.0f, 1.0f, 0.3f},
+             0.7f);  // the same place
   const Voxels a = voxelize(context(), scene, unit_grid(24));
   const Voxels b = voxelize(context(), scene, unit_grid(24));
   ASSERT_EQ(a.sides.size(), b.sides.size());

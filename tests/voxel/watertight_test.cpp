@@ -38,12 +38,30 @@ class Watertight : public GlTest {
   std::map<int, std::unique_ptr<SlicedVoxelization>> voxelizations_;
 };
 
-const glm::vec3 kNormals[] = {{1, 0, 0},  {0, -1, 0}, {0, 0, 1},  {1, 1, 0},   {1, -1, 0},  {-1, 0, 1},           {0, 1, 1},
-                              {0, 1, -1}, {1, 1, 1},  {1, -1, 1}, {-1, -1, 1}, {2, 1, 0},   {1, -2, 0},           {3, -4, 0},
-                              {0, 2, -1}, {1, 2, -3}, {5, 1, -2}, {1, 0.02f, -0.01f}, {0.31f, -0.83f, 0.47f}, {-0.11f, 0.23f, 0.9f}};
+const glm::vec3 kNormals[] = {{1, 0, 0},
+                              {0, -1, 0},
+                              {0, 0, 1},
+                              {1, 1, 0},
+                              {1, -1, 0},
+                              {-1, 0, 1},
+                              {0, 1, 1},
+                              {0, 1, -1},
+                              {1, 1, 1},
+                              {1, -1, 1},
+                              {-1, -1, 1},
+                              {2, 1, 0},
+                              {1, -2, 0},
+                              {3, -4, 0},
+                              {0, 2, -1},
+                              {1, 2, -3},
+                              {5, 1, -2},
+                              {1, 0.02f, -0.01f},
+                              {0.31f, -0.83f, 0.47f},
+                              {-0.11f, 0.23f, 0.9f}};
 
 /// Offsets in cells from the grid's middle: through cell corners and face centres, through cell centres, and between.
-const glm::vec3 kOffsets[] = {{0, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.5f, 0, 0}, {0.25f, 0.1f, -0.3f}, {-0.37f, 0.41f, 0.17f}};
+const glm::vec3 kOffsets[] = {
+    {0, 0, 0}, {0.5f, 0.5f, 0.5f}, {0.5f, 0, 0}, {0.25f, 0.1f, -0.3f}, {-0.37f, 0.41f, 0.17f}};
 
 TEST_F(Watertight, SingleSheets) {
   for (int n : {16, 24, 32}) {
@@ -54,8 +72,8 @@ TEST_F(Watertight, SingleSheets) {
         Scene scene;
         add_square(scene, add_material(scene, glm::vec3(0.5f)), on_wall, normal, 4.0f);
         EXPECT_EQ(leaks(scene, n, on_wall, normal, 1.75f * 2.0f / float(n)), 0)
-            << "grid " << n << ", normal " << direction.x << ' ' << direction.y << ' ' << direction.z << ", offset " << offset.x << ' '
-            << offset.y << ' ' << offset.z;
+            << "grid " << n << ", normal " << direction.x << ' ' << direction.y << ' ' << direction.z << ", offset "
+            << offset.x << ' ' << offset.y << ' ' << offset.z;
       }
     }
   }
@@ -72,7 +90,8 @@ TEST_F(Watertight, WallsThinnerThanACell) {
         add_square(scene, grey, on_wall, -normal, 4.0f);
         add_square(scene, grey, on_wall + 0.02f * normal, normal, 4.0f);
         EXPECT_EQ(leaks(scene, n, on_wall + 0.01f * normal, normal, 0.01f + 1.75f * 2.0f / float(n)), 0)
-            << "grid " << n << ", normal " << direction.x << ' ' << direction.y << ' ' << direction.z << ", offset " << offset.x;
+            << "grid " << n << ", normal " << direction.x << ' ' << direction.y << ' ' << direction.z << ", offset "
+            << offset.x;
       }
     }
   }
@@ -86,7 +105,8 @@ TEST_F(Watertight, MixedWinding) {
     Scene scene;
     Mesh& mesh = add_square(scene, add_material(scene, glm::vec3(0.5f)), on_wall, normal, 4.0f);
     std::swap(mesh.triangles[1].y, mesh.triangles[1].z);
-    EXPECT_EQ(leaks(scene, 16, on_wall, normal, 1.75f / 8.0f), 0) << direction.x << ' ' << direction.y << ' ' << direction.z;
+    EXPECT_EQ(leaks(scene, 16, on_wall, normal, 1.75f / 8.0f), 0)
+        << direction.x << ' ' << direction.y << ' ' << direction.z;
   }
 }
 
@@ -107,12 +127,13 @@ int escapes(const Voxels& v, glm::vec3 middle, const Outside& outside) {
 
 // Closed boxes have edges, and where walls go through cell centres so do the edges.
 TEST_F(Watertight, ClosedBoxes) {
-  const glm::mat3 turns[] = {glm::mat3(1.0f), rotation({0, 1, 0}, 45.0f), rotation({1, 0, 0}, 45.0f), rotation({0, 0, 1}, 30.0f),
+  const glm::mat3 turns[] = {glm::mat3(1.0f), rotation({0, 1, 0}, 45.0f), rotation({1, 0, 0}, 45.0f),
+                             rotation({0, 0, 1}, 30.0f),
                              rotation({0, 1, 0}, 30.0f) * rotation({1, 0, 0}, 20.0f) * rotation({0, 0, 1}, 10.0f)};
   SlicedVoxelization voxelization(unit_grid(16));
   for (int t = 0; t < 5; ++t) {
     const glm::mat3& turn = turns[t];
-    for (float half : {0.5f, 0.5625f, 0.51f, 0.4999f, 0.4375f}) {          // faces of cells, centres of cells, between
+    for (float half : {0.5f, 0.5625f, 0.51f, 0.4999f, 0.4375f}) {  // faces of cells, centres of cells, between
       for (glm::vec3 offset : {glm::vec3(0.0f), glm::vec3(0.0625f), glm::vec3(0.013f, -0.027f, 0.04f)}) {
         Scene scene;
         add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), offset, glm::vec3(half), turn);
