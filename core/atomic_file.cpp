@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -36,7 +37,9 @@ fs::path temporary_name(const fs::path& target) {
 
 }  // namespace
 
-void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+namespace {
+
+void check_target(const fs::path& target) {
   std::error_code error;
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (target.filename().empty()) fail(target, "no file name given");
@@ -47,9 +50,21 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
   // A rename would replace a device such as /dev/null by a file.
   const fs::file_status status = fs::status(target, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) fail(target, "it exists and is not a regular file");
+}
 
+}  // namespace
+
+void check_writable(const fs::path& target) {
+  check_target(target);
+  const TemporaryFile probe{temporary_name(target)};  // seen to be full or read-only only when written
+  if (!std::ofstream(probe.path)) fail(target, "no permission or no space");
+}
+
+void write_atomically(const fs::path& target, const std::function<void(const fs::path&)>& write) {
+  check_target(target);
   TemporaryFile temporary{temporary_name(target)};
   write(temporary.path);
+  std::error_code error;
   fs::rename(temporary.path, target, error);
   if (error) fail(target, error.message());
   temporary.path.clear();

@@ -10,4 +10,7 @@ namespace volgi {
 void write_atomically(const std::filesystem::path& target,
                       const std::function<void(const std::filesystem::path&)>& write);
 
+/// Throws what write_atomically(target) would throw before it writes: for finding out before minutes of work.
+void check_writable(const std::filesystem::path& target);
+
 }  // namespace volgi

@@ -3,9 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string_view>
+#include <tuple>
+#include <unordered_set>
 
 #include "core/error.h"
 #include "core/gltf_internal.h"
@@ -160,9 +165,37 @@ Scene SceneFile::at(double time_s) const {
     if (!done.triangles.empty()) scene.meshes.push_back(std::move(done));
   }
   if (dropped > 0) gltf::warn(data_->path, fmt::format("{} triangles without area are left out", dropped));
+  const size_t duplicates = drop_duplicate_triangles(scene);
+  if (duplicates > 0)
+    gltf::warn(data_->path, fmt::format("{} triangles lie exactly on others and are left out", duplicates));
   update_bounds(scene);
   data_->add_lights_and_cameras(world, scene);
   return scene;
+}
+
+size_t drop_duplicate_triangles(Scene& scene) {
+  // Corners from the smallest on, in their order: the same for the same triangle whichever corner its list begins with.
+  using Key = std::array<float, 9>;
+  struct Hash {
+    size_t operator()(const Key& key) const {
+      return std::hash<std::string_view>{}({reinterpret_cast<const char*>(key.data()), sizeof key});
+    }
+  };
+  const auto less = [](glm::vec3 a, glm::vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  std::unordered_set<Key, Hash> seen;
+  seen.reserve(scene.triangle_count());
+  size_t dropped = 0;
+  for (Mesh& mesh : scene.meshes) {
+    dropped += std::erase_if(mesh.triangles, [&](glm::uvec3 t) {
+      std::array<glm::vec3, 3> p{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+      std::rotate(p.begin(), std::min_element(p.begin(), p.end(), less), p.end());
+      Key key{};
+      for (size_t i = 0; i < 9; ++i) key[i] = p[i / 3][int(i % 3)] + 0.0f;  // -0 is 0
+      return !seen.insert(key).second;
+    });
+  }
+  std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
+  return dropped;
 }
 
 Scene load_scene(const std::filesystem::path& path, double time_s) { return SceneFile(path).at(time_s); }

@@ -128,6 +128,10 @@ class SceneFile {
 /// SceneFile(path).at(time_s).
 Scene load_scene(const std::filesystem::path& path, double time_s = 0.0);
 
+/// Removes triangles that lie exactly on an earlier one with the same front: one surface, not two, for everything that
+/// counts area or emission. Triangles back to back stay. @returns how many went. Cost: one hash a triangle.
+size_t drop_duplicate_triangles(Scene& scene);
+
 /// Recomputes bounds_min and bounds_max from the meshes (for scenes built in code).
 void update_bounds(Scene& scene);
 

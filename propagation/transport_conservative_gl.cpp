@@ -6,7 +6,7 @@ namespace volgi {
 
 namespace {
 
-constexpr glm::ivec3 kLocal{8, 8, 2};  // propagate.comp.glsl, emit.comp.glsl
+constexpr glm::ivec3 kLocal{8, 8, 4};  // propagate.comp.glsl, emit.comp.glsl
 constexpr int kBatch = 8;  // passes between two looks at the power in flight: a look costs a third of a pass
 
 // A pulse that has not ended after 64 crossings of the grid never will (a closed box without losses).

@@ -28,28 +28,12 @@ struct ReferenceOptions {
   bool quiet = false;
 };
 
-// Hours of rendering must not end in a folder that cannot be written: a file beside the target, at once removed again.
-void check_writable(const std::filesystem::path& output) {
-  if (output.extension() != ".exr")
-    throw Error(ExitCode::usage, fmt::format("-o {}: a reference is an EXR file, name it *.exr", output.string()));
-  if (std::filesystem::is_directory(output))
-    throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: it is a folder", output.string()));
-  struct Unwritten {};
-  try {
-    write_atomically(output, [&](const std::filesystem::path& temporary) {
-      std::FILE* file = std::fopen(temporary.c_str(), "wb");
-      if (file == nullptr)
-        throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: no permission or no space", output.string()));
-      std::fclose(file);
-      throw Unwritten{};  // the target, if there is one, stays as it is
-    });
-  } catch (const Unwritten&) {
-  }
-}
-
 void render(const ReferenceOptions& options) {
   set_quiet(options.quiet);
-  check_writable(options.output);
+  if (options.output.extension() != ".exr")
+    throw Error(ExitCode::usage,
+                fmt::format("-o {}: a reference is an EXR file, name it *.exr", options.output.string()));
+  check_writable(options.output);  // not after hours of rendering
   PathTracerOptions tracer = options.tracer;
   tracer.size = options.scene.size();
   tracer.max_bounces = options.bounces;

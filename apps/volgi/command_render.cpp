@@ -34,14 +34,7 @@ struct RenderCommand {
   void write_picture(const Image& picture) const;
 };
 
-void refuse_unwritable(const std::filesystem::path& target) {
-  // Seen now rather than after minutes of work; an existing file is left as it is.
-  write_atomically(target.parent_path() / ("." + target.filename().string() + ".writable"),
-                   [](const std::filesystem::path& p) { std::ofstream{p}; });
-  std::filesystem::remove(target.parent_path() / ("." + target.filename().string() + ".writable"));
-}
-
-void refuse_bad_picture(const Image& picture) {
+void warn_of_bad_pixels(const Image& picture) {
   for (const glm::vec3& p : picture.pixels) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       warn_once("the picture has pixels that are not finite: please report the scene and the command");
@@ -65,8 +58,8 @@ int RenderCommand::run() const {
   if (out.extension() != ".exr" && out.extension() != ".png") {
     throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .exr or .png");
   }
-  refuse_unwritable(out);
-  if (!stats.empty()) refuse_unwritable(stats);
+  check_writable(out);
+  if (!stats.empty()) check_writable(stats);
   Scene loaded = load_scene(scene.scene_path, scene.time_s);
   Camera camera = scene.camera(loaded);
   gl::Context context(device);
@@ -84,7 +77,7 @@ int RenderCommand::run() const {
     timer.end_frame();
   }
   Image image = screen::image_from_texture(picture.radiance());
-  refuse_bad_picture(image);
+  warn_of_bad_pixels(image);
   write_picture(image);
   auto numbers = frame_stats(loaded.name, frame.gi, size, context, timer, frames, picture.report());
   numbers["parameters"] = {

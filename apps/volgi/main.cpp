@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
 
 #include "apps/volgi/commands.h"
 #include "core/error.h"
@@ -35,6 +36,11 @@ int main(int argc, char** argv) {
     return app.exit(e);
   } catch (const CLI::CallForVersion& e) {
     return app.exit(e);
+  } catch (const CLI::RequiredError& e) {
+    const bool unknown = argc > 1 && app.get_subcommands().empty();
+    std::cerr << "volgi: " << (unknown ? "no command '" + std::string(argv[1]) + "'" : e.what())
+              << " (see volgi --help)\n";
+    return int(ExitCode::usage);
   } catch (const CLI::ParseError& e) {
     std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
     return int(ExitCode::usage);

@@ -4,7 +4,7 @@
 #include "shared/side.shared.h"
 #include "shared/sh.shared.h"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 2) in;
+layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
 layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };

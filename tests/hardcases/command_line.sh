@@ -89,7 +89,7 @@ if [[ -n $gl ]]; then
   refuse 2 "device 99" render "$scene" -o out.exr --device 99
   refuse 6 none/ render "$scene" -o out.exr --size 8x8 --stats none/stats.json
 fi
-refuse 2 subcommand magic
+refuse 2 "'magic'" magic
 refuse 3 missing.exr compare missing.exr missing.exr
 refuse 3 text.glb compare text.glb text.glb
 
