@@ -46,7 +46,7 @@ class PrimitiveReader {
     const auto found = in_.attributes.find(name);
     if (found == in_.attributes.end()) return {};
     const std::string label = fmt::format("{} {}", who_, name);
-    const auto values = vectors<Vec>(read_elements(document_, found->second, expected, label));
+    auto values = vectors<Vec>(read_elements(document_, found->second, expected, label));
     if (count != 0 && values.size() != count) {
       refuse(document_.path, fmt::format("{} has {} elements for {} vertices", label, values.size(), count));
     }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -16,7 +17,7 @@ constexpr std::int64_t quiet_start_ms = 1000;  // shorter work shows nothing
 constexpr std::int64_t redraw_ms = 200;
 
 std::string remaining_time(double seconds) {
-  const auto whole = std::int64_t(std::min(seconds, 359999.0) + 0.5);
+  const std::int64_t whole = std::llround(std::min(seconds, 359999.0));
   if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }

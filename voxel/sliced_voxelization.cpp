@@ -10,7 +10,7 @@ namespace volgi {
 namespace {
 constexpr int kGroup = 256;      // list_sides_*.comp.glsl
 constexpr int kAreaSamples = 4;  // along each edge of a face; 16 of them count its area to 6 % at an edge
-}
+}  // namespace
 
 void VoxelGridGl::bind() const {
   grid_block.bind_uniform(0);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cstddef>
+#include <cstring>
 #include <string>
 
 #include "core/error.h"
@@ -88,7 +90,12 @@ Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags) : bytes_(std::m
   GLuint id = 0;
   glCreateBuffers(1, &id);
   handle_ = Handle<delete_buffer>(id);
-  glNamedBufferStorage(id, GLsizeiptr(bytes_), bytes == 0 ? nullptr : data, flags);
+  std::array<std::byte, 16> padded{};  // what is smaller than the smallest buffer is not read beyond its end
+  if (data != nullptr && bytes < padded.size()) {
+    std::memcpy(padded.data(), data, bytes);
+    data = padded.data();
+  }
+  glNamedBufferStorage(id, GLsizeiptr(bytes_), data, flags);
   throw_if_out_of_memory("a buffer of " + std::to_string(bytes_) + " bytes");
 }
 

@@ -64,17 +64,17 @@ SHARED_FUNCTION ivec3 face_coord(Grid grid, int axis, int index) {
   return face_cell;
 }
 
-// Which face a surface at depth `x` (cell units along the axis) blocks: the segment between two cell centres that x lies
-// between. Depths within 2^-14 cells of a centre are snapped first, so that a wall exactly through cell centres falls
-// on one side of all of them whatever the rounding of its columns.
+// Which face a surface at depth `x` (cell units along the axis) blocks: the segment between two cell centres that x
+// lies between. Depths within 2^-14 cells of a centre are snapped first, so that a wall exactly through cell centres
+// falls on one side of all of them whatever the rounding of its columns.
 SHARED_FUNCTION int face_of_depth(float x) {
   float snapped = floor(x * 8192.0f + 0.5f) / 8192.0f;
   return int(floor(snapped + 0.5f));
 }
 
-// Vertices as the slicing passes see them: rounded to 2^-9 cells, so that which columns a triangle covers and which cell
-// centres lie behind it can be answered exactly, in double precision up to 128 cells. The answers then are about one
-// surface, and what is closed in the scene is closed in the volume.
+// Vertices as the slicing passes see them: rounded to 2^-9 cells, so that which columns a triangle covers and which
+// cell centres lie behind it can be answered exactly, in double precision up to 128 cells. The answers then are about
+// one surface, and what is closed in the scene is closed in the volume.
 #define SLICE_STEPS 512  // of a cell; even, so that centres are whole
 SHARED_FUNCTION ivec3 slice_vertex(vec3 cell) { return ivec3(floor(cell * float(SLICE_STEPS) + 0.5f)); }
 

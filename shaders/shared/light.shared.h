@@ -12,11 +12,11 @@ SHARED_BEGIN
 struct PunctualLight {
   vec3 position;
   int type;
-  vec3 direction;      // unit, the way light travels
-  float range_m;       // 0: unlimited
-  vec3 intensity;      // W/sr, or W/m^2 for a directional light
-  float spot_scale;    // glTF: 1 / max(0.001, cos inner - cos outer)
-  float spot_offset;   // -cos outer * spot_scale
+  vec3 direction;     // unit, the way light travels
+  float range_m;      // 0: unlimited
+  vec3 intensity;     // W/sr, or W/m^2 for a directional light
+  float spot_scale;   // glTF: 1 / max(0.001, cos inner - cos outer)
+  float spot_offset;  // -cos outer * spot_scale
   float cos_outer;
   float pad0;
   float pad1;

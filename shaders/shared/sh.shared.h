@@ -13,9 +13,9 @@ SHARED_BEGIN
 // Six pyramids tile the sphere: int x^2 + 2 int y^2 = 4 pi/6 (tests/propagation/sh_test.cpp).
 // Transfer of a lobe cut at the pyramid: M = int Y_i Y_j; axis-axis, axis-constant and transverse elements.
 const float PYRAMID_CONSTANT = 1.0f / 6.0f;
-const float PYRAMID_AXIS = 0.23994378f;       // sqrt3/(4 pi) * int x
-const float PYRAMID_AXIS_AXIS = 0.35044297f;  // 3/(4 pi) * int x^2
-const float PYRAMID_TRANSVERSE = 0.07477852f; // 3/(4 pi) * int y^2
+const float PYRAMID_AXIS = 0.23994378f;        // sqrt3/(4 pi) * int x
+const float PYRAMID_AXIS_AXIS = 0.35044297f;   // 3/(4 pi) * int x^2
+const float PYRAMID_TRANSVERSE = 0.07477852f;  // 3/(4 pi) * int y^2
 
 // Component of the lobe that belongs to an axis: x -> w, y -> y, z -> z.
 SHARED_FUNCTION int sh_component(int axis) { return axis == 0 ? 3 : axis; }

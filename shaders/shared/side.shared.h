@@ -6,16 +6,16 @@ SHARED_BEGIN
 
 // std430, 64 bytes.
 struct Side {
-  vec3 normal;      // geometric, towards the cell that sees the side
-  float coverage;   // tau: share of the face's power that is stopped
+  vec3 normal;     // geometric, towards the cell that sees the side
+  float coverage;  // tau: share of the face's power that is stopped
   vec3 albedo;
-  float area_m2;    // A: of the surface that the side stands for; tau h^2 / s on a plane (voxel/side_area)
-  vec3 radiosity;   // emitted: pi * L_e [W m^-2]
-  float face_m2;    // m = tau h^2: what the side shows to the grid
-  int cell;         // offset of the cell that sees it
-  int face;         // face of that cell
-  float depth;      // of the surface along the face's axis, cell units
-  int front;        // 1 when the cell sees the triangle's front, else 0
+  float area_m2;   // A: of the surface that the side stands for; tau h^2 / s on a plane (voxel/side_area)
+  vec3 radiosity;  // emitted: pi * L_e [W m^-2]
+  float face_m2;   // m = tau h^2: what the side shows to the grid
+  int cell;        // offset of the cell that sees it
+  int face;        // face of that cell
+  float depth;     // of the surface along the face's axis, cell units
+  int front;       // 1 when the cell sees the triangle's front, else 0
 };
 #ifdef __cplusplus
 static_assert(sizeof(Side) == 64 && offsetof(Side, radiosity) == 32 && offsetof(Side, cell) == 48);
@@ -39,8 +39,8 @@ SHARED_FUNCTION uint side_index(uvec2 cell_sides, int face) {
 SHARED_FUNCTION float staircase_factor(vec3 normal) { return abs(normal.x) + abs(normal.y) + abs(normal.z); }
 
 // A tilted surface shows the grid a staircase m of s times its area A, which also intercepts (s-1)/s of what it sends;
-// s = m/A. With these three the net power is exactly A (B0 - (1-rho) E) whatever s is, also where a side stands for more or
-// less surface than its face because an edge is near (docs/theory.md#sides; tests/propagation/side_test.cpp).
+// s = m/A. With these three the net power is exactly A (B0 - (1-rho) E) whatever s is, also where a side stands for
+// more or less surface than its face because an edge is near (docs/theory.md#sides; tests/propagation/side_test.cpp).
 SHARED_FUNCTION vec3 side_denominator(vec3 albedo, float area_m2, float face_m2) {
   return vec3(area_m2) + (face_m2 - area_m2) * albedo;
 }
@@ -50,14 +50,17 @@ SHARED_FUNCTION vec3 side_sent_power(vec3 flux, vec3 albedo, float area_m2, floa
 SHARED_FUNCTION vec3 side_returned_fraction(vec3 albedo, float area_m2, float face_m2) {
   return face_m2 * albedo / side_denominator(albedo, area_m2, face_m2);
 }
-// Irradiance of the surface [W m^-2]. It belongs to the surface's plane, so the staircase here is that of its normal: a side
-// near an edge that stands for more surface than its face is not darker for that. Can be negative on tilted surfaces.
-SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo, vec3 normal, float area_m2, float face_m2) {
+// Irradiance of the surface [W m^-2]. It belongs to the surface's plane, so the staircase here is that of its normal: a
+// side near an edge that stands for more surface than its face is not darker for that. Can be negative on tilted
+// surfaces.
+SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo, vec3 normal, float area_m2,
+                                     float face_m2) {
   float s = staircase_factor(normal);
   return (received_power * (s / face_m2) - (s - 1.0f) * flux / area_m2) / (1.0f + (s - 1.0f) * albedo);
 }
-// A side that no surface was counted for keeps this part of its face as area, so that nothing is divided by zero.
-#define SIDE_LEAST_AREA 1e-3f
+// A side stands for at least this part of a plane through its face: what little surface is counted for a side must not
+// make the light that is put down there many times brighter.
+#define SIDE_LEAST_FILL 0.25f
 
 SHARED_END
 #endif

@@ -13,5 +13,5 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= side_count) return;
   float area_m2 = float(area_fixed[i]) / 1048576.0 * grid.cell_size_m * grid.cell_size_m;
-  sides[i].area_m2 = max(area_m2, SIDE_LEAST_AREA * sides[i].face_m2);
+  sides[i].area_m2 = max(area_m2, SIDE_LEAST_FILL * sides[i].face_m2 / staircase_factor(sides[i].normal));
 }

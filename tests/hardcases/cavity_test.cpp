@@ -105,6 +105,8 @@ struct BlackCase {
   double most_excess;  // 1.5 times the worst measured
 };
 
+void PrintTo(const BlackCase& c, std::ostream* out) { *out << c.cells << " cells, half edge " << c.half_edge; }
+
 class BlackSurface : public Cavity, public testing::WithParamInterface<BlackCase> {};
 
 TEST_P(BlackSurface, ReturnsNothing) {

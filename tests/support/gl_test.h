@@ -1,6 +1,7 @@
 #pragma once
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <memory>
 #include <string>
 
@@ -16,7 +17,10 @@ class GlTest : public ::testing::Test {
   static gl::Context& context() { return *shared().context; }
 
   void SetUp() override {
-    if (!shared().context) GTEST_SKIP() << "no OpenGL: " << shared().reason;
+    if (!shared().context) {
+      if (std::getenv("VOLGI_REQUIRE_GL") != nullptr) FAIL() << "no OpenGL: " << shared().reason;
+      GTEST_SKIP() << "no OpenGL: " << shared().reason;
+    }
     errors_before_ = context().debug_errors();
   }
 
