@@ -82,6 +82,7 @@ void main() {
   if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1);
   if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1);
   if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1);
+  if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2);
   if (g.weight == 0.0) return;
   vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / 3.14159265;
   direct_radiance = vec4(reflectance * g.direct / g.weight, 1.0);
