@@ -57,7 +57,7 @@ fs::path resolve_uri(const fs::path& file, const std::string& who, const std::st
   }
   std::error_code error;
   const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
-  const fs::path target = fs::weakly_canonical(folder / relative, error);
+  fs::path target = fs::weakly_canonical(folder / relative, error);
   if (error || !fs::exists(target, error)) refuse(file, fmt::format("{}: missing file '{}'", who, *decoded));
   if (!lies_in(target, folder)) {
     refuse(file, fmt::format("{}: '{}' is a link out of the file's folder, which is not allowed", who, *decoded));
