@@ -111,6 +111,7 @@ const gl::Texture& Frame::radiance() const { return compose_.radiance(); }
 
 FrameReport Frame::report() const {
   FrameReport r;
+  // Per pixel: depth, position, normals, albedo, emission and id of the G-buffer; direct; compose.
   r.memory_bytes = buffers_.bytes() + shadow_maps_.bytes() +
                    size_t(options_.size.x) * size_t(options_.size.y) * (4 + 16 + 8 + 8 + 16 + 4 + 16 + 16);
   if (!volume_) return r;

@@ -4,7 +4,7 @@
 
 layout(std430, binding = 12) buffer FluxFixed { uint flux_fixed[]; };  // 3 per side
 layout(std430, binding = 13) buffer FluxLost { uint flux_lost[3]; };   // what found no side
-uniform float flux_unit;  // [W]; all light of one source is below 2^31 of them
+uniform float flux_unit;  // [W]; all light of one source is at most 2^30 of them
 
 // Any side of the 5^3 cells around that faces the same way at all, the nearest first by rings.
 int find_any_side(vec3 point, vec3 normal) {

@@ -64,9 +64,9 @@ SHARED_FUNCTION ivec3 face_coord(Grid grid, int axis, int index) {
   return face_cell;
 }
 
-// Which face a surface at depth `x` (cell units along the axis) blocks: the segment between two cell centres that x
-// lies between. Depths within 2^-14 cells of a centre are snapped first, so that a wall exactly through cell centres
-// falls on one side of all of them whatever the rounding of its columns.
+// The face whose two cell centres a depth `x` (cell units along the axis) lies between. Depths within 2^-14 cells of a
+// centre are snapped first, so that points of one wall through cell centres agree. For finding sides again; which faces
+// are blocked, the slicing passes decide exactly (slice.frag.glsl).
 SHARED_FUNCTION int face_of_depth(float x) {
   float snapped = floor(x * 8192.0f + 0.5f) / 8192.0f;
   return int(floor(snapped + 0.5f));

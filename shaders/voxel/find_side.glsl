@@ -9,7 +9,8 @@ layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
 
 // Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, as a floor
-// does under a carpet: by more than the two planes can part within half a cell when they are one bent surface.
+// does under a carpet: by more than the two planes can part within the half diagonal of a face (0.71 cells) when they are
+// one bent surface. Layers nearer than 0.02 cells count as one: their areas add up.
 bool behind_side(Side side, vec3 normal, int axis, float depth) {
   float cosine = clamp(dot(side.normal, normal), 0.1, 1.0);
   float bend = sqrt(1.0 - cosine * cosine) / cosine;
