@@ -29,5 +29,5 @@ configure_package_config_file(cmake/volgiConfig.cmake.in ${PROJECT_BINARY_DIR}/v
   INSTALL_DESTINATION ${VOLGI_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
 # Before 1.0 a minor version may change anything.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/volgiConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/volgiConfig.cmake ${PROJECT_BINARY_DIR}/volgiConfigVersion.cmake
+install(FILES cmake/OpenVDB.cmake ${PROJECT_BINARY_DIR}/volgiConfig.cmake ${PROJECT_BINARY_DIR}/volgiConfigVersion.cmake
   DESTINATION ${VOLGI_PACKAGE_DIR})

@@ -12,6 +12,13 @@ struct BounceRules {
   /// Passes over the volume: of each order with `bounces`, else in all, with reflections in flight together. Schemes
   /// that carry an order in one pass take it as the most orders.
   std::optional<int> iterations;
+  /// Conjugate gradients over bounces instead of one order after another, where the scheme allows it (linear, all
+  /// bounces, no warm start of plain orders asked for).
+  enum class Solver { automatic, plain, conjugate_gradients };
+  Solver solver = Solver::automatic;
+  /// Amortised: at most this many passes over the volume a run, starting from the last run's answer. None: until done.
+  /// A usage error together with `bounces`, and with schemes that have no answer to start from.
+  std::optional<int> passes_a_run;
   /// rho_max: the scene's largest albedo.
   float largest_albedo = 0.5f;
 
@@ -38,6 +45,7 @@ struct BounceReport {
   glm::vec3 sent{0.0f};  // power sent by sides in all orders [W]
   glm::vec3 left{0.0f};  // power not carried to its end: in flight, or not sent any more [W]
   bool converged = false;
+  bool conjugate_gradients = false;
 };
 
 }  // namespace volgi

@@ -8,6 +8,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "core/gl/scene_buffers.h"
+#include "core/light_layers.h"
 #include "core/scene.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
@@ -60,9 +61,5 @@ class ReflectiveShadowMap {
   gl::Buffer light_buffer_, layer_buffer_;
   gl::Program program_;
 };
-
-/// The layers of one light's map, fitted to its cone or to the scene's bounds.
-std::vector<shared::ReflectiveShadowLayer> reflective_shadow_layers(const Light& light, int resolution,
-                                                                    glm::vec3 bounds_min, glm::vec3 bounds_max);
 
 }  // namespace volgi::screen

@@ -132,7 +132,7 @@ TEST(ReflectiveShadowLayers, PositionsAndClipCoordinatesAgree) {
   const glm::vec3 high(3, 2, 2);
   for (const Light& light : {sun_light({-0.6f, -1.0f, -0.4f}, 1.0f), point_light({0.5f, 1.0f, 0.25f}, 1.0f),
                              spot_light({0.5f, 1.0f, 0.25f}, {0.3f, -1, 0.1f}, 10, 50, 1.0f)}) {
-    for (const auto& layer : screen::reflective_shadow_layers(light, 128, low, high)) {
+    for (const auto& layer : reflective_shadow_layers(light, 128, low, high)) {
       const glm::vec3 uvz(0.3f, -0.7f, 1.25f);
       const glm::vec3 p = shared::rsm_position_from_uvz(layer, uvz);
       const glm::vec3 back = shared::rsm_uvz_from_position(layer, p);
@@ -146,7 +146,7 @@ TEST(ReflectiveShadowLayers, PositionsAndClipCoordinatesAgree) {
 }
 
 TEST(ReflectiveShadowLayers, DirectionsFindTheFaceThatLooksTheirWay) {
-  const auto faces = screen::reflective_shadow_layers(point_light({1, 2, 3}, 1.0f), 64, {0, 0, 0}, {4, 4, 4});
+  const auto faces = reflective_shadow_layers(point_light({1, 2, 3}, 1.0f), 64, {0, 0, 0}, {4, 4, 4});
   ASSERT_EQ(faces.size(), 6u);
   const float edge = 1.0f - 4.0f / 64.0f;  // the face proper ends two texels before the layer
   for (const glm::vec3 d : {glm::vec3(1, 0.9f, -0.99f), glm::vec3(-2, 1, 1), glm::vec3(0.5f, 1, 0.5f),
@@ -162,7 +162,7 @@ TEST(ReflectiveShadowLayers, DirectionsFindTheFaceThatLooksTheirWay) {
 TEST(ReflectiveShadowLayers, FlatAndEmptyScenes) {
   for (const glm::vec3 high : {glm::vec3(0.0f), glm::vec3(4, 0, 4)}) {
     for (const Light& light : {sun_light({0, 0, 1}, 1.0f), sun_light({0, -1, 0}, 1.0f), point_light({0, 0, 0}, 1.0f)}) {
-      for (const auto& layer : screen::reflective_shadow_layers(light, 64, glm::vec3(0.0f), high)) {
+      for (const auto& layer : reflective_shadow_layers(light, 64, glm::vec3(0.0f), high)) {
         for (int i = 0; i < 16; ++i) EXPECT_TRUE(std::isfinite(layer.clip_from_world[i / 4][i % 4]));
       }
     }

@@ -1,12 +1,12 @@
 // Where the layers of a reflective shadow map look.
+#include "core/light_layers.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
-#include "screen/reflective_shadow_map.h"
-
-namespace volgi::screen {
+namespace volgi {
 namespace {
 
 using shared::ReflectiveShadowLayer;
@@ -88,4 +88,4 @@ std::vector<ReflectiveShadowLayer> reflective_shadow_layers(const Light& light, 
   return faces;
 }
 
-}  // namespace volgi::screen
+}  // namespace volgi

@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+
+namespace volgi {
+
+/// How the volume propagates light (--scheme; docs/theory.md).
+enum class Scheme {
+  ordinates,      // discrete ordinates: sides, orders exact, linear
+  conservative,   // spherical harmonics, power kept: sides, orders exact
+  gaitatzes2010,  // as printed: a pulse, cones, axis mirror
+  lpv2009,        // as printed: a pulse, no occlusion, first order only
+};
+
+/// Step: a cell's power of a direction leaves through its downwind faces as |d_x| : |d_y| : |d_z|. Characteristic
+/// (SC1): by the exact overlap of what came in through each upwind face with each downwind face.
+enum class Ordinates { step, characteristic };
+
+struct SchemeOptions {
+  Scheme scheme = Scheme::ordinates;
+  std::optional<int> directions;       // of ordinates: 8, 24, 48, 80, 128; none: what goes with the grid
+  std::optional<Ordinates> ordinates;  // none: what goes with the grid
+  int sh_order = 1;                    // of the three SH schemes: 1 or 2
+  bool constant_albedo = false;        // gaitatzes2010: 0.5 after the first bounce, as the paper has it
+  bool coarse_start = true;            // conservative: a grid of half the edge is solved first
+};
+
+/// Whether the scheme carries power from sides to sides order by order (warm start, --bounces); the papers' two do not.
+inline bool carries_sides(Scheme s) { return s == Scheme::ordinates || s == Scheme::conservative; }
+
+}  // namespace volgi

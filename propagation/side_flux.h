@@ -1,0 +1,23 @@
+#pragma once
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/light.h"
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+/// What lit and emissive surfaces send before any transport, as flux A·B0 per side [W] (rgb): light in. Twin of
+/// SideFluxGl.
+struct SideFlux {
+  std::vector<glm::vec4> emitted;   // emission: its first arrival is direct light
+  std::vector<glm::vec4> punctual;  // reflected light of punctual sources
+  glm::vec3 lost{0.0f};             // flux that found no side anywhere near [W]
+};
+
+/// Deposits samples on the sides that stand for their points (docs/theory.md#light-in): the sum over sides and `lost`
+/// is the sum over samples. Samples are added in their order, whatever the number of threads.
+void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost);
+
+}  // namespace volgi

@@ -1,0 +1,21 @@
+#pragma once
+#include <openvdb/openvdb.h>
+
+#include "voxel/grid.h"
+
+namespace volgi {
+
+/// What cells hold of the surfaces in them, for looking at, for export and for the papers' schemes. Index space is cell
+/// coordinates; the transform puts index (i,j,k) at the cell's centre, in metres, in the file's world frame. Only cells
+/// with a surface are active.
+struct CellVolumes {
+  openvdb::FloatGrid::Ptr occupancy;  // largest share of light that a surface in the cell stops (MAX), 0 ... 1
+  openvdb::Vec3SGrid::Ptr albedo;     // mean over the surface in the cell
+  openvdb::Vec3SGrid::Ptr normal;     // mean of the fronts, unit; zero where they cancel
+  openvdb::Vec3SGrid::Ptr emission;   // largest radiosity pi * L_e in the cell (MAX) [W m^-2]
+};
+
+/// Transform of every grid that volgi makes: index (i,j,k) is the centre of cell (i,j,k).
+openvdb::math::Transform::Ptr world_from_index(const Grid& grid, glm::dvec3 world_origin);
+
+}  // namespace volgi

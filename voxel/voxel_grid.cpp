@@ -1,0 +1,40 @@
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+namespace {
+
+/// Bits of side.shared.h for a cell that has sides `first` ... `last` - 1.
+std::uint32_t face_bits(const std::vector<shared::Side>& sides, size_t first, size_t last) {
+  std::uint32_t bits = 0;
+  for (size_t i = first; i < last; ++i) {
+    bits |= 1u << sides[i].face;
+    if (sides[i].coverage >= 1.0f) bits |= 256u << sides[i].face;
+  }
+  return bits;
+}
+
+}  // namespace
+
+VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides)
+    : grid_(grid),
+      blocks_(leaf_blocks(grid)),
+      sides_(std::move(sides)),
+      tree_(std::make_shared<CellSidesTree>(0)),
+      leaves_(size_t(blocks_.x) * size_t(blocks_.y) * size_t(blocks_.z), nullptr) {
+  std::vector<Leaf*> writable(leaves_.size(), nullptr);
+  for (size_t first = 0, last = 0; first < sides_.size(); first = last) {
+    while (last < sides_.size() && sides_[last].cell == sides_[first].cell) ++last;
+    const glm::ivec3 cell = shared::cell_coord(grid_, sides_[first].cell);
+    Leaf*& leaf = writable[size_t(block_index(blocks_, cell / kLeafCells))];
+    if (leaf == nullptr) leaf = tree_->touchLeaf(openvdb::Coord(cell.x, cell.y, cell.z));
+    leaf->setValueOn(openvdb::Index(leaf_offset(cell)), pack({std::uint32_t(first), face_bits(sides_, first, last)}));
+  }
+  leaves_.assign(writable.begin(), writable.end());
+}
+
+size_t VoxelGrid::bytes() const {
+  return tree_->memUsage() + sides_.size() * sizeof(shared::Side) + leaves_.size() * sizeof(const Leaf*);
+}
+
+}  // namespace volgi

@@ -1,0 +1,63 @@
+#pragma once
+#include <openvdb/Types.h>
+#include <openvdb/tree/Tree.h>
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "shaders/shared/side.shared.h"
+#include "voxel/grid.h"
+
+namespace volgi {
+
+/// Blocks of 8^3 cells, the leaves of OpenVDB's trees; a cell's place in its leaf is z fastest, as OpenVDB has it.
+constexpr int kLeafCells = 8;
+inline glm::ivec3 leaf_blocks(const Grid& grid) { return (grid.cells + (kLeafCells - 1)) / kLeafCells; }
+inline int block_index(glm::ivec3 blocks, glm::ivec3 block) {  // x fastest, as cells
+  return block.x + blocks.x * (block.y + blocks.y * block.z);
+}
+inline int leaf_offset(glm::ivec3 cell) {
+  return ((cell.x & (kLeafCells - 1)) << 6) | ((cell.y & (kLeafCells - 1)) << 3) | (cell.z & (kLeafCells - 1));
+}
+
+/// Blocked faces and sides of a grid on the CPU; twin of VoxelGridGl. A sparse OpenVDB tree over the cells (index space
+/// is cell coordinates) says which sides a cell has: the uvec2 of side.shared.h, x in the low and y in the high half of
+/// an int64; leaves exist only where there are sides. Sides are a compact list, those of one cell beside each other in
+/// the order of faces; cells may come in any order. Memory: 4 KiB a leaf, 64 bytes a side, 8 bytes a block.
+class VoxelGrid {
+ public:
+  using CellSidesTree = openvdb::tree::Tree4<std::int64_t, 5, 4, 3>::Type;
+  using Leaf = CellSidesTree::LeafNodeType;
+
+  VoxelGrid() : VoxelGrid(Grid{}, {}) {}
+  /// @param sides  those of one cell beside each other, in the order of faces. Faces stop everything where coverage
+  ///               is 1.
+  VoxelGrid(const Grid& grid, std::vector<shared::Side> sides);
+
+  const Grid& grid() const { return grid_; }
+  const std::vector<shared::Side>& sides() const { return sides_; }
+  size_t side_count() const { return sides_.size(); }
+  const CellSidesTree& cell_sides_tree() const { return *tree_; }
+
+  /// Leaf of a block, or null where no cell of the block has a side. Two loads.
+  const Leaf* leaf(glm::ivec3 block) const { return leaves_[size_t(block_index(blocks_, block))]; }
+  glm::ivec3 blocks() const { return blocks_; }
+  /// (0, 0) for a cell without sides. The cell must lie inside the grid.
+  glm::uvec2 cell_sides(glm::ivec3 cell) const {
+    const Leaf* l = leaf(cell / kLeafCells);
+    return l == nullptr ? glm::uvec2(0) : unpack(l->buffer().data()[leaf_offset(cell)]);
+  }
+  static glm::uvec2 unpack(std::int64_t v) { return {std::uint32_t(v), std::uint32_t(std::uint64_t(v) >> 32)}; }
+  static std::int64_t pack(glm::uvec2 v) { return std::int64_t(std::uint64_t(v.x) | (std::uint64_t(v.y) << 32)); }
+
+  size_t bytes() const;
+
+ private:
+  Grid grid_{};
+  glm::ivec3 blocks_{0};
+  std::vector<shared::Side> sides_;
+  CellSidesTree::Ptr tree_;
+  std::vector<const Leaf*> leaves_;  // by block
+};
+
+}  // namespace volgi
