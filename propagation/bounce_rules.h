@@ -4,38 +4,54 @@
 
 namespace volgi {
 
-/// When the solver stops: its rules apart from where it runs (conventions; techniques, "Transport operator and
-/// orders").
+/// When the solver stops: its rules apart from where it runs (docs/theory.md#orders).
 struct BounceRules {
   /// Reflections to carry: N orders for punctual light, N+1 for emission, whose arrival is bounce 0. None: all of them.
   std::optional<int> bounces;
   /// Passes over the volume: of each order with `bounces`, else in all, with reflections in flight together. Schemes
   /// that carry an order in one pass take it as the most orders.
   std::optional<int> iterations;
-  /// Conjugate gradients over bounces instead of one order after another, where the scheme allows it (linear, all
-  /// bounces, no warm start of plain orders asked for).
-  enum class Solver { automatic, plain, conjugate_gradients };
-  Solver solver = Solver::automatic;
-  /// Amortised: at most this many passes over the volume a run, starting from the last run's answer. None: until done.
-  /// A usage error together with `bounces`, and with schemes that have no answer to start from.
-  std::optional<int> passes_a_run;
   /// rho_max: the scene's largest albedo.
   float largest_albedo = 0.5f;
+  /// Conjugate gradients over bounces instead of one order after another. Automatic: where the scheme is linear and all
+  /// bounces are asked for. A usage error where it is not, and with `bounces` and `passes_a_run`.
+  enum class Solver { automatic, plain, conjugate_gradients };
+  Solver solver = Solver::automatic;
+  /// Amortised: at most this many passes over the volume a run, one bounce after another, P <- K(e + fP), from the last
+  /// run's answer (black at first). None: until done. A usage error together with `bounces` and `iterations`.
+  std::optional<int> passes_a_run;
+  /// Starts from the last run's answer where there is one of as many sides and all bounces are asked for. The answer is
+  /// that of a cold start to kTolerance in a linear scheme. Others then solve P = K(e + fP), all light in one pulse,
+  /// which is not the sum of their orders.
+  bool warm_start = false;
 
   /// Share of the light that stopping early may cost: 0.2 %.
   static constexpr float kTolerance = 2e-3f;
   /// An albedo of 1 would never end: what is left after 1 % absorption a bounce is asked for then.
   static constexpr float kLeastAbsorption = 0.01f;
+  /// 0.2 % at the largest albedo that counts, 0.99, needs 1,300.
+  static constexpr int kMostOrders = 5000;
 
   float absorption() const;
   /// All orders in flight together: what orders there are cannot be told apart afterwards.
   bool together() const { return iterations && !bounces; }
   /// The order ends: power in flight under kTolerance (1 - rho_max) of what was sent, in every band.
   bool pulse_ended(glm::vec3 in_flight, glm::vec3 sent) const;
-  /// Orders end: what the next order would send, over (1 - rho_max), under kTolerance of all that was sent.
+  /// Orders end: what one more would change of what sides send (that is, what the next order would send), over
+  /// (1 - rho_max), under kTolerance of all that was sent. A bound: K brings no more than was sent and sides return
+  /// rho_max of it at most, so the next order changes rho_max times that, and so on.
   bool orders_ended(glm::vec3 next_sent, glm::vec3 total_sent) const;
   /// Orders that follow from the albedo alone; for estimates only.
   int expected_orders() const;
+
+  /// @throws Error(usage) for rules that make no sense together, naming them. @param linear  of the scheme.
+  void check(bool linear) const;
+  bool conjugate_gradients(bool linear) const;
+  /// Whether the last run's answer may be the start.
+  bool continues() const { return passes_a_run || (warm_start && !bounces && !iterations); }
+  /// Amortised, with emission: one order in so many renews its first arrival, the others carry bounces. Once a run where
+  /// an order is one pass.
+  int arrival_cycle(bool iterative) const;
 };
 
 /// What the solver did, for --stats and for warnings.
@@ -47,5 +63,8 @@ struct BounceReport {
   bool converged = false;
   bool conjugate_gradients = false;
 };
+
+/// Says so on stderr when the estimate after the first order exceeds a minute.
+void announce_long_run(double seconds_an_order, const BounceRules& rules);
 
 }  // namespace volgi

@@ -8,14 +8,24 @@
 
 namespace volgi {
 
-/// Applies a transport operator order by order on the CPU, or all orders at once by conjugate gradients; twin of
-/// BouncesGl (docs/theory.md#orders). State is kept from run to run: the last run's answer is where the next one starts
-/// (rules.warm_start).
+/// Applies a transport operator on the CPU: order by order, or to all orders at once by conjugate gradients; twin of
+/// BouncesGl (docs/theory.md#orders). The last run's answer is kept, and is where the next one starts where the rules
+/// say so. No result depends on the number of threads. Memory: six powers (16 bytes) a side.
+///
+/// Conjugate gradients: with K from sent to received power, f the returned fraction and e what the sources send, the
+/// power P that sides receive solves P = K(e + fP). S = K/tau of the receiving side is symmetric, so I - fK is
+/// self-adjoint and positive in the product <a,b> = sum of a b / (f tau) over what sides send, and is solved there; in
+/// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (techniques, "Few bounces"). Every step's K d is added
+/// up into P, which makes P = K(e + v) of the sought v = fP: one plain bounce from v, also where f = 0, at no cost. The
+/// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
 class Bounces {
  public:
   explicit Bounces(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
 
+  /// @throws Error(usage) as BounceRules::check.
   BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules);
+  /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
+  void set_transport(std::unique_ptr<Transport> transport);
 
   const std::vector<glm::vec4>& received_direct() const { return received_direct_; }  // emission's first arrival [W]
   const std::vector<glm::vec4>& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
@@ -24,8 +34,27 @@ class Bounces {
   Transport& transport() const { return *transport_; }
 
  private:
+  using Powers = std::vector<glm::vec4>;
+  struct Run;
+  void make_room(const Run& run);
+  glm::dvec3 carry(const Powers& sent, BounceReport& report, const BounceRules& rules);
+  void arrival_of_emission(const Run& run, BounceReport& report);
+  void orders(const Run& run, BounceReport& report);
+  void renewals(const Run& run, BounceReport& report);
+  void solve_conjugate(const Run& run, BounceReport& report);
+  void amortised(const Run& run, BounceReport& report);
+  void set_source(const Run& run);
+  glm::vec3 start_share(bool warm);
+  glm::dvec3 renew(const glm::vec3& share, Powers& change);
+
   std::unique_ptr<Transport> transport_;
-  std::vector<glm::vec4> received_direct_, received_indirect_;
+  Powers received_direct_, received_indirect_;
+  Powers response_;                 // rgb: returned fraction f, w: coverage tau
+  Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]
+  glm::dvec3 source_power_{0.0};     // of the last run, in all [W]
+  // Amortised: an order may go on in the next run.
+  bool in_flight_ = false, arrival_in_flight_ = false;
+  int orders_begun_ = 0;
 };
 
 /// Irradiance per side [W m^-2] for pixels, twin of SideIrradianceGl: smoothed over 3^3 cells, then clamped at zero.

@@ -1,6 +1,7 @@
 #include "propagation/ordinates.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <string>
 
@@ -23,6 +24,12 @@ void add_permutations(OrdinateSet& set, float a, float b, float octant_share_eac
   }
 }
 
+void add_permutations(OrdinateSet& set, glm::vec3 cosines, float octant_share_each) {
+  for (glm::ivec3 order : {glm::ivec3(0, 1, 2), {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
+    add_direction(set, {cosines[order.x], cosines[order.y], cosines[order.z]}, octant_share_each);
+  }
+}
+
 }  // namespace
 
 OrdinateSet ordinate_set(int directions) {
@@ -40,20 +47,68 @@ OrdinateSet ordinate_set(int directions) {
       break;
     case 80:
       add_permutations(set, 0.9511897f, 0.2182179f, 0.1209877f);
-      for (glm::ivec3 order : {glm::ivec3(0, 1, 2), {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
-        const glm::vec3 cosines(0.2182179f, 0.5773503f, 0.7867958f);
-        add_direction(set, {cosines[order.x], cosines[order.y], cosines[order.z]}, 0.0907407f);
-      }
+      add_permutations(set, glm::vec3(0.2182179f, 0.5773503f, 0.7867958f), 0.0907407f);
       add_direction(set, glm::vec3(1.0f), 0.0925926f);
+      break;
+    case 128:  // areas and means of the triangles: ordinates_test.cpp
+      add_permutations(set, 0.9822383f, 0.1326799f, 0.0503509f);
+      add_permutations(set, glm::vec3(0.1415561f, 0.5171574f, 0.8441031f), 0.0537228f);
+      add_permutations(set, 0.9223848f, 0.2731357f, 0.0585505f);
+      add_permutations(set, 0.2870176f, 0.6773555f, 0.0840497f);
+      add_direction(set, glm::vec3(1.0f), 0.0988103f);
       break;
     default:
       throw Error(ExitCode::usage,
-                  "no set of " + std::to_string(directions) + " directions; there are 8, 24, 48 and 80");
+                  "no set of " + std::to_string(directions) + " directions; there are 8, 24, 48, 80 and 128");
   }
   for (size_t i = 0; i < set.directions.size(); ++i) set.t += 4.0f * set.weights[i] * set.directions[i].x;
   return set;
 }
 
-int directions_for_grid(glm::ivec3 cells) { return std::max({cells.x, cells.y, cells.z}) <= 16 ? 24 : 48; }
+CellTransfer cell_transfer(Ordinates rule, glm::vec3 direction) {
+  const glm::dvec3 d(direction);
+  glm::dmat3 share;
+  glm::dvec3 track;
+  if (rule == Ordinates::step) {
+    const double s = d.x + d.y + d.z;
+    share = glm::dmat3(d / s, d / s, d / s);
+    track = glm::dvec3(1.0 / s);
+  } else {
+    // Light that comes in through the face of axis `in`, uniform over it, has moved on by the length l (in cell edges)
+    // with probability (1 - d_b l)(1 - d_c l), l < m, without having met the faces of the two other axes b and c. It
+    // leaves through b at the rate d_b (1 - d_c l), and through `in`'s downwind face if m was the way to that.
+    const double m = 1.0 / std::max({d.x, d.y, d.z});
+    for (int in = 0; in < 3; ++in) {
+      const int b = (in + 1) % 3, c = (in + 2) % 3;
+      share[in][b] = d[b] * (m - d[c] * m * m / 2.0);
+      share[in][c] = d[c] * (m - d[b] * m * m / 2.0);
+      share[in][in] = std::max((1.0 - d[b] * m) * (1.0 - d[c] * m), 0.0);
+      track[in] = m - (d[b] + d[c]) * m * m / 2.0 + d[b] * d[c] * m * m * m / 3.0;
+    }
+  }
+  return {glm::mat3(share), glm::vec3(track)};
+}
+
+glm::vec3 radiance_per_watt(const OrdinateSet& set, size_t i, Ordinates rule, float cell_size_m) {
+  // Power P on its way for the length l h through a volume h^3 is a mean of P l h / h^3.
+  const float scale = set.t / (glm::pi<float>() * cell_size_m * cell_size_m);
+  return scale * cell_transfer(rule, set.directions[i]).track;
+}
+
+OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options) {
+  const int longest = std::max({cells.x, cells.y, cells.z});
+  // Between the sizes that were measured (16, 32, 64, 128) the change is at the geometric mean.
+  OrdinateChoice choice;
+  choice.directions = longest <= 16 ? 24 : longest <= 45 ? 48 : longest <= 90 ? 80 : 128;
+  if (options.directions) choice.directions = *options.directions;
+  if (!options.directions && options.ordinates == Ordinates::characteristic) {
+    choice.directions = std::max(choice.directions, 48);
+  }
+  choice.rule = choice.directions >= 48 ? Ordinates::characteristic : Ordinates::step;
+  if (options.ordinates) choice.rule = *options.ordinates;
+  return choice;
+}
+
+int directions_for_grid(glm::ivec3 cells) { return choose_ordinates(cells, SchemeOptions{}).directions; }
 
 }  // namespace volgi

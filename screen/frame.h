@@ -3,45 +3,40 @@
 #include <optional>
 
 #include "core/gl/pass_timer.h"
-#include "propagation/bounce_rules.h"
+#include "propagation/volume_options.h"
 #include "screen/bounce_budget.h"
 #include "screen/compose.h"
 #include "screen/direct.h"
+#include "screen/frame_volume.h"
 #include "screen/reflective_shadow_map.h"
 
 namespace volgi::screen {
 
-/// How the volume propagates light (--scheme).
-enum class Scheme { ordinates, conservative };
+/// Where the volume is computed: on the GPU, or by its CPU twin (whose answer is uploaded). `automatic` takes the CPU
+/// where GL is a software rasterizer, and the GPU elsewhere.
+enum class Backend { automatic, gpu, cpu };
 
 struct FrameOptions {
   GiMode gi = GiMode::volume;
   LightPart light = LightPart::full;
   glm::ivec2 size{512, 512};
-  int grid_cells = 32;               // along the longest axis
-  glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
-  std::optional<int> bounces;
-  std::optional<int> iterations;
-  Scheme scheme = Scheme::ordinates;
-  std::optional<int> directions;  // of `ordinates`; none: what goes with the grid
+  VolumeOptions volume;
+  Backend backend = Backend::automatic;
   ReflectiveShadowMap::Resolution shadow_resolution;
 };
 
 /// What a frame was made of, for --stats.
 struct FrameReport {
-  glm::ivec3 grid{0};
-  std::uint32_t sides = 0;
-  BounceReport bounces;
-  glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
-  glm::vec3 lost{0.0f};      // part of it that found no side [W]
-  size_t memory_bytes = 0;   // GPU
+  VolumeReport volume;
+  size_t memory_bytes = 0;  // of GL objects, and of the volume wherever it lies
 };
 
 /// The frame: which passes run, and in which order. One scene, one picture size; render() as often as wanted.
 /// Needs a current gl::Context.
 class Frame {
  public:
-  /// @throws Error as make_grid and gl::Buffer do.
+  /// @throws Error as make_grid and gl::Buffer do; Error(usage) for volume options that make no sense together;
+  ///   Error(over_limit) above options.volume.memory_limit.
   Frame(const Scene& scene, const FrameOptions& options);
   ~Frame();
   Frame(const Frame&) = delete;
@@ -53,10 +48,6 @@ class Frame {
   FrameReport report() const;
 
  private:
-  struct Volume;
-  void run_volume(gl::PassTimer& timer);
-  bool needs_shadow_maps() const;
-
   const Scene& scene_;
   FrameOptions options_;
   BounceBudget budget_;
@@ -65,7 +56,7 @@ class Frame {
   GBuffer gbuffer_;
   Direct direct_;
   Compose compose_;
-  std::unique_ptr<Volume> volume_;  // none when nobody asks for its light
+  std::unique_ptr<FrameVolume> volume_;  // none when nobody asks for its light
 };
 
 }  // namespace volgi::screen

@@ -15,7 +15,8 @@ VolumeGather::VolumeGather(glm::ivec2 size)
 }
 
 void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels,
-                       const SideIrradianceGl& irradiance, gl::PassTimer& timer) {
+                       const gl::Buffer& direct_irradiance, const gl::Buffer& indirect_irradiance,
+                       gl::PassTimer& timer) {
   auto scope = timer.scope(name);
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
@@ -23,8 +24,8 @@ void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Voxel
   gbuffer.normals().bind(1);
   gbuffer.albedo().bind(2);
   voxels.bind();
-  irradiance.direct().bind_storage(6);
-  irradiance.indirect().bind_storage(7);
+  direct_irradiance.bind_storage(6);
+  indirect_irradiance.bind_storage(7);
   program_.use();
   const bool perspective = camera.kind == Camera::Kind::perspective;
   program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);

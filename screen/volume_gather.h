@@ -2,8 +2,8 @@
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
-#include "propagation/side_irradiance_gl.h"
 #include "screen/gbuffer.h"
+#include "voxel/voxel_grid_gl.h"
 
 namespace volgi::screen {
 
@@ -14,8 +14,9 @@ class VolumeGather {
  public:
   static constexpr const char* name = "screen/volume_gather";
   explicit VolumeGather(glm::ivec2 size);
-  void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const SideIrradianceGl& irradiance,
-           gl::PassTimer& timer);
+  /// @param direct_irradiance, indirect_irradiance  per side, vec4 [W m^-2]
+  void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const gl::Buffer& direct_irradiance,
+           const gl::Buffer& indirect_irradiance, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]

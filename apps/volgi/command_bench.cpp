@@ -26,20 +26,20 @@ struct BenchCommand {
   std::optional<int> device;
 
   int run() const;
-  nlohmann::json bench_frame(const std::string& name, screen::Scheme scheme, gl::Context& context) const;
+  nlohmann::json bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const;
 };
 
 /// `conservative` runs the number of passes asked for, as the papers' tables have it; `ordinates` all bounces.
-nlohmann::json BenchCommand::bench_frame(const std::string& name, screen::Scheme scheme, gl::Context& context) const {
+nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const {
   std::filesystem::path path = data / (name + ".glb");
   if (!std::filesystem::exists(path)) path = generated / (name + ".glb");
   Scene scene = load_scene(path);
   if (scene.cameras.empty()) throw Error(ExitCode::bad_input, path.string() + ": a benchmark scene needs a camera");
   screen::FrameOptions options;
   options.size = {size, size};
-  options.grid_cells = grid_cells;
-  options.scheme = scheme;
-  if (scheme == screen::Scheme::conservative) options.iterations = iterations;
+  options.volume.grid_cells = grid_cells;
+  options.volume.scheme.scheme = scheme;
+  if (scheme == Scheme::conservative) options.volume.iterations = iterations;
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context.software(), true);
   constexpr int kWarmUp = 2;
@@ -64,10 +64,10 @@ int BenchCommand::run() const {
   gl::Context context(device);
   nlohmann::json results = nlohmann::json::array();
   for (const char* name : {"cornell", "atrium"}) {
-    for (auto scheme : {screen::Scheme::conservative, screen::Scheme::ordinates}) {
+    for (auto scheme : {Scheme::conservative, Scheme::ordinates}) {
       results.push_back(bench_frame(name, scheme, context));
       auto& r = results.back();
-      r["scheme"] = scheme == screen::Scheme::conservative ? "conservative" : "ordinates";
+      r["scheme"] = scheme == Scheme::conservative ? "conservative" : "ordinates";
       if (json) continue;
       fmt::print("{} {}x{}, {}, {} ({} timer)\n{}", name, size, size, r["scheme"].get<std::string>(),
                  context.device_name(), r["timer"].get<std::string>(), pass_table(r));
@@ -94,7 +94,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
   command->add_option("--grid", options->grid_cells, "cells along the longest axis")
-      ->check(CLI::Range(1, 128))
+      ->check(CLI::Range(1, VolumeOptions::kMostGridCells))
       ->capture_default_str();
   command->add_option("--iterations", options->iterations, "passes over the volume")
       ->check(CLI::Range(1, 100000))

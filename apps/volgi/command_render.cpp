@@ -53,6 +53,7 @@ void RenderCommand::write_picture(const Image& picture) const {
 
 int RenderCommand::run() const {
   set_quiet(quiet);
+  frame.volume.limit_threads();
   glm::ivec2 size = scene.size();
   screen::FrameOptions options = frame.frame_options(size);
   if (out.extension() != ".exr" && out.extension() != ".png") {
@@ -80,8 +81,10 @@ int RenderCommand::run() const {
   warn_of_bad_pixels(image);
   write_picture(image);
   auto numbers = frame_stats(loaded.name, frame.gi, size, context, timer, frames, picture.report());
-  numbers["parameters"] = {
-      {"light", frame.light}, {"scheme", frame.scheme}, {"grid", frame.grid_cells}, {"set", frame.parameters}};
+  numbers["parameters"] = {{"light", frame.light},
+                           {"scheme", frame.volume.scheme},
+                           {"grid", frame.volume.grid_cells},
+                           {"set", frame.parameters}};
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << numbers.dump(1) << '\n'; });
   }

@@ -1,21 +1,19 @@
 #pragma once
 #include <CLI/CLI.hpp>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/volgi/volume_options.h"
 #include "screen/frame.h"
 
 namespace volgi::app {
 
-/// What `render` and `bench` say about the technique: --gi, --light, --bounces, --grid, --scheme, --iterations, --set.
+/// What `render` says about the technique: --gi, --light, --backend, --set and what VolumeCommandOptions takes.
 struct FrameCommandOptions {
   std::string gi = "volume";
   std::string light = "full";
-  std::string scheme = "ordinates";
-  std::optional<int> bounces, iterations, directions;
-  int grid_cells = 32;
+  std::string backend = "auto";
+  VolumeCommandOptions volume;
   std::vector<std::string> parameters;  // NAME=VALUE
 
   void add_to(CLI::App& command);

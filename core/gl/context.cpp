@@ -228,6 +228,11 @@ const std::string& Context::version() const { return data_->version; }
 bool Context::software() const { return is_software(data_->name); }
 int Context::debug_errors() const { return data_->errors; }
 
+bool current_is_software() {
+  const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return renderer == nullptr || is_software(renderer);
+}
+
 std::vector<std::string> list_devices() {
   std::vector<std::string> lines;
   for (const Device& d : devices(client_functions())) lines.push_back(d.name);

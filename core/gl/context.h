@@ -28,6 +28,9 @@ class Context {
   std::unique_ptr<Data> data_;
 };
 
+/// Whether the context that is current on this thread is a software rasterizer.
+bool current_is_software();
+
 /// One line per device that EGL reports, in the order of --device.
 std::vector<std::string> list_devices();
 

@@ -26,7 +26,7 @@ struct Solved {
 class Cavity : public GlTest {
  protected:
   /// The volume's part of a frame, as screen/frame.cpp runs it.
-  static Solved solve(const Scene& scene, const Grid& grid, screen::Scheme scheme, float largest_albedo) {
+  static Solved solve(const Scene& scene, const Grid& grid, Scheme scheme, float largest_albedo) {
     gl::PassTimer timer(context().software(), false);
     const gl::SceneBuffers buffers(scene);
     screen::ReflectiveShadowMap maps;
@@ -40,7 +40,7 @@ class Cavity : public GlTest {
     flux.inject_emitters(voxels, pieces, timer);
     screen::InjectReflectiveShadowMap().run(voxels, maps, scene, flux, timer);
     std::unique_ptr<TransportGl> transport = std::make_unique<OrdinatesTransportGl>(grid, 48);
-    if (scheme == screen::Scheme::conservative) transport = std::make_unique<ConservativeTransportGl>(grid);
+    if (scheme == Scheme::conservative) transport = std::make_unique<ConservativeTransportGl>(grid);
     BouncesGl bounces(std::move(transport));
     BounceRules rules;
     rules.largest_albedo = largest_albedo;
@@ -58,7 +58,7 @@ class Cavity : public GlTest {
 
   /// A spot in the middle of a sphere lights a twelfth of it: mean E of all reflected light over the exact rho Phi /
   /// ((1-rho) area).
-  static double sphere_ratio(float albedo, screen::Scheme scheme, int cells) {
+  static double sphere_ratio(float albedo, Scheme scheme, int cells) {
     Scene scene;
     add_sphere_inside(scene, add_material(scene, glm::vec3(albedo)), glm::vec3(0.0f), 0.9f, 24);
     scene.lights.push_back(
@@ -80,7 +80,7 @@ class Cavity : public GlTest {
 
 TEST_F(Cavity, SphereOrdinates) {
   for (float albedo : {0.3f, 0.7f}) {
-    const double ratio = sphere_ratio(albedo, screen::Scheme::ordinates, 24);
+    const double ratio = sphere_ratio(albedo, Scheme::ordinates, 24);
     EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
     RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(ratio));
   }
@@ -88,7 +88,7 @@ TEST_F(Cavity, SphereOrdinates) {
 
 TEST_F(Cavity, SphereConservative) {
   for (float albedo : {0.3f, 0.7f}) {
-    const double ratio = sphere_ratio(albedo, screen::Scheme::conservative, 16);
+    const double ratio = sphere_ratio(albedo, Scheme::conservative, 16);
     EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
     RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(ratio));
   }
@@ -99,7 +99,7 @@ TEST_F(Cavity, SphereConservative) {
 // staircase sends back to its own steps, nothing, the schemes let it take a part from beyond; a plate draws light
 // around its rim as well.
 struct BlackCase {
-  screen::Scheme scheme;
+  Scheme scheme;
   int cells;
   float half_edge;
   double most_excess;  // 1.5 times the worst measured
@@ -136,13 +136,12 @@ TEST_P(BlackSurface, ReturnsNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, BlackSurface,
-                         testing::Values(BlackCase{screen::Scheme::ordinates, 24, 4.0f, 0.07},
-                                         BlackCase{screen::Scheme::ordinates, 24, 0.5f, 0.13},
-                                         BlackCase{screen::Scheme::conservative, 16, 4.0f, 0.13},
-                                         BlackCase{screen::Scheme::conservative, 16, 0.5f, 0.95}),
+                         testing::Values(BlackCase{Scheme::ordinates, 24, 4.0f, 0.07},
+                                         BlackCase{Scheme::ordinates, 24, 0.5f, 0.13},
+                                         BlackCase{Scheme::conservative, 16, 4.0f, 0.13},
+                                         BlackCase{Scheme::conservative, 16, 0.5f, 0.95}),
                          [](const auto& test) {
-                           return std::string(test.param.scheme == screen::Scheme::ordinates ? "Ordinates"
-                                                                                             : "Conservative") +
+                           return std::string(test.param.scheme == Scheme::ordinates ? "Ordinates" : "Conservative") +
                                   (test.param.half_edge > 1.0f ? "Wall" : "Plate");
                          });
 

@@ -30,7 +30,7 @@ class Degenerate : public GlTest {
   static screen::FrameOptions options() {
     screen::FrameOptions o;
     o.size = {64, 64};
-    o.grid_cells = 12;
+    o.volume.grid_cells = 12;
     return o;
   }
   static Image framed(const Scene& scene, const screen::FrameOptions& o = options()) {
@@ -54,13 +54,13 @@ TEST_F(Degenerate, NoLights) {
 }
 
 TEST_F(Degenerate, OneTriangle) {
-  for (screen::Scheme scheme : {screen::Scheme::ordinates, screen::Scheme::conservative}) {
+  for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {
     Scene scene;
     Mesh& mesh = add_quad(scene, add_material(scene, glm::vec3(0.8f)), {-1, 0, 0}, {2, 0, 0}, {0, 1, 1});
     mesh.triangles.resize(1);
     scene.lights.push_back(point_light({0.0f, 0.5f, 2.0f}, glm::vec3(3.0f)));
     screen::FrameOptions o = options();
-    o.scheme = scheme;
+    o.volume.scheme.scheme = scheme;
     EXPECT_GT(mean(framed(scene, o)), 0.0);
     o.light = screen::LightPart::indirect;
     EXPECT_LT(mean(framed(scene, o)), 1e-3);  // a plane does not light itself
@@ -128,10 +128,10 @@ TEST_F(Degenerate, SheetOnAWall) {
 TEST_F(Degenerate, UnknownDirectionsAndGrids) {
   const Scene scene = load_scene(kData / "cornell.glb");
   screen::FrameOptions o = options();
-  o.directions = 10;
+  o.volume.scheme.directions = 10;
   EXPECT_THROW(screen::Frame(scene, o), Error);
   o = options();
-  o.grid_cells = 0;
+  o.volume.grid_cells = 0;
   EXPECT_THROW(screen::Frame(scene, o), Error);
 }
 
@@ -143,7 +143,7 @@ TEST_F(Degenerate, EmissiveSceneAgainstPaths) {
   tracer.samples_per_pixel = 64;
   const double exact = mean(path_trace(scene, scene.cameras.at(0), tracer).color);
   screen::FrameOptions o = options();
-  o.grid_cells = 24;
+  o.volume.grid_cells = 24;
   const double energy = mean(render(context(), scene, scene.cameras.at(0), o).image) / exact;
   EXPECT_NEAR(energy, 1.0, 0.25);
   RecordProperty("energy", std::to_string(energy));

@@ -14,7 +14,7 @@ namespace {
 class Furnace : public GlTest {
  protected:
   /// Mean over the pixels whose 5x5 neighbours lie on the same wall.
-  static double wall_mean(float albedo, const glm::mat3& turn, int grid_cells, screen::Scheme scheme) {
+  static double wall_mean(float albedo, const glm::mat3& turn, int grid_cells, Scheme scheme) {
     Scene scene;
     scene.name = "furnace";
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f),
@@ -23,11 +23,11 @@ class Furnace : public GlTest {
                                    scene.bounds_min, scene.bounds_max);
     screen::FrameOptions options;
     options.size = {64, 64};
-    options.grid_cells = grid_cells;
-    options.scheme = scheme;
+    options.volume.grid_cells = grid_cells;
+    options.volume.scheme.scheme = scheme;
     Rendered r = render(context(), scene, camera, options);
-    EXPECT_EQ(r.report.lost, glm::vec3(0.0f));
-    EXPECT_NEAR(r.report.injected.x, 24.0 * M_PI, 24.0 * M_PI * 1e-4);  // 24 m^2 of pi L_e
+    EXPECT_EQ(r.report.volume.lost, glm::vec3(0.0f));
+    EXPECT_NEAR(r.report.volume.injected.x, 24.0 * M_PI, 24.0 * M_PI * 1e-4);  // 24 m^2 of pi L_e
     double sum = 0.0;
     int count = 0;
     for (int y = 2; y < 62; ++y) {
@@ -45,14 +45,14 @@ class Furnace : public GlTest {
   }
 
   /// Mean over all six walls: seen from the middle, pixels are equal areas of a wall.
-  static double whole_walls_mean(float albedo, int grid_cells, screen::Scheme scheme) {
+  static double whole_walls_mean(float albedo, int grid_cells, Scheme scheme) {
     Scene scene;
     scene.name = "furnace";
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
     screen::FrameOptions options;
     options.size = {24, 24};
-    options.grid_cells = grid_cells;
-    options.scheme = scheme;
+    options.volume.grid_cells = grid_cells;
+    options.volume.scheme.scheme = scheme;
     screen::Frame frame(scene, options);
     gl::PassTimer timer(context().software(), false);
     double sum = 0.0;
@@ -85,15 +85,14 @@ class Furnace : public GlTest {
 
 TEST_F(Furnace, UprightOrdinates) {
   for (float albedo : {0.0f, 0.5f, 0.8f, 0.95f}) {
-    EXPECT_NEAR(wall_mean(albedo, glm::mat3(1.0f), 16, screen::Scheme::ordinates) * (1.0f - albedo), 1.0, 0.01)
-        << albedo;
+    EXPECT_NEAR(wall_mean(albedo, glm::mat3(1.0f), 16, Scheme::ordinates) * (1.0f - albedo), 1.0, 0.01) << albedo;
   }
 }
 
 TEST_F(Furnace, UprightConservative) {
   // Its pulses are brighter in the middle of walls than at their edges: the mean is over whole walls.
   for (float albedo : {0.0f, 0.5f, 0.8f}) {
-    EXPECT_NEAR(whole_walls_mean(albedo, 12, screen::Scheme::conservative) * (1.0f - albedo), 1.0, 0.01) << albedo;
+    EXPECT_NEAR(whole_walls_mean(albedo, 12, Scheme::conservative) * (1.0f - albedo), 1.0, 0.01) << albedo;
   }
 }
 
@@ -101,15 +100,15 @@ TEST_F(Furnace, TurnedOrdinates) {
   const glm::mat3 about_y = rotation({0, 1, 0}, 45.0f);
   const glm::mat3 all_ways = rotation({1, 0, 0}, 30.0f) * rotation({0, 1, 0}, 20.0f) * rotation({0, 0, 1}, 10.0f);
   for (float albedo : {0.5f, 0.8f}) {
-    EXPECT_NEAR(wall_mean(albedo, about_y, 32, screen::Scheme::ordinates) * (1.0f - albedo), 1.0, 0.03) << albedo;
-    EXPECT_NEAR(wall_mean(albedo, all_ways, 32, screen::Scheme::ordinates) * (1.0f - albedo), 1.0, 0.03) << albedo;
+    EXPECT_NEAR(wall_mean(albedo, about_y, 32, Scheme::ordinates) * (1.0f - albedo), 1.0, 0.03) << albedo;
+    EXPECT_NEAR(wall_mean(albedo, all_ways, 32, Scheme::ordinates) * (1.0f - albedo), 1.0, 0.03) << albedo;
   }
 }
 
 TEST_F(Furnace, TurnedConservative) {
   const glm::mat3 about_y = rotation({0, 1, 0}, 45.0f);
   for (float albedo : {0.5f, 0.8f}) {
-    EXPECT_NEAR(wall_mean(albedo, about_y, 20, screen::Scheme::conservative) * (1.0f - albedo), 1.0, 0.03) << albedo;
+    EXPECT_NEAR(wall_mean(albedo, about_y, 20, Scheme::conservative) * (1.0f - albedo), 1.0, 0.03) << albedo;
   }
 }
 

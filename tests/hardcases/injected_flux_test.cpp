@@ -21,13 +21,14 @@ class InjectedFlux : public GlTest {
     for (int cells : {16, 32, 64}) {
       screen::FrameOptions options;
       options.size = {16, 16};
-      options.grid_cells = cells;
-      options.bounces = 1;
+      options.volume.grid_cells = cells;
+      options.volume.bounces = 1;
       const Camera camera = framing_camera(scene.bounds_min, scene.bounds_max);
       const screen::FrameReport report = render(context(), scene, camera, options).report;
-      EXPECT_EQ(report.lost, glm::vec3(0.0f)) << cells;
+      EXPECT_EQ(report.volume.lost, glm::vec3(0.0f)) << cells;
       for (int band = 0; band < 3; ++band) {
-        EXPECT_NEAR(report.injected[band], flux[band], 0.02f * flux[band]) << "grid " << cells << " band " << band;
+        EXPECT_NEAR(report.volume.injected[band], flux[band], 0.02f * flux[band])
+            << "grid " << cells << " band " << band;
       }
     }
   }

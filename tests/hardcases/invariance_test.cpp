@@ -35,11 +35,11 @@ double rmse_percent(const Image& test, const Image& ref, double factor = 1.0) {
 
 class Invariance : public GlTest {
  protected:
-  static screen::FrameOptions options(screen::Scheme scheme = screen::Scheme::ordinates) {
+  static screen::FrameOptions options(Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o;
     o.size = {64, 64};
-    o.grid_cells = 12;
-    o.scheme = scheme;
+    o.volume.grid_cells = 12;
+    o.volume.scheme.scheme = scheme;
     return o;
   }
 };
@@ -112,7 +112,7 @@ TEST_F(Invariance, Offset) {
 }
 
 TEST_F(Invariance, Range) {
-  for (screen::Scheme scheme : {screen::Scheme::ordinates, screen::Scheme::conservative}) {
+  for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {
     for (const char* name : {"cornell", "emissive"}) {
       const Scene scene = load_scene(kData / (std::string(name) + ".glb"));
       const Image ref = render(context(), scene, scene.cameras.at(0), options(scheme)).image;
@@ -133,7 +133,7 @@ TEST_F(Invariance, Range) {
           }
         }
         EXPECT_LT(worst, 1e-3) << name << " x " << factor
-                               << (scheme == screen::Scheme::ordinates ? " ordinates" : " conservative");
+                               << (scheme == Scheme::ordinates ? " ordinates" : " conservative");
       }
     }
   }
@@ -145,7 +145,7 @@ TEST_F(Invariance, SumOfLights) {
   for (auto [name, limit] : {std::pair("convex_box", 0.1), {"cornell", 0.5}}) {
     Scene scene = load_scene(kData / (std::string(name) + ".glb"));
     screen::FrameOptions o = options();
-    o.bounces = 4;
+    o.volume.bounces = 4;
     const Light a = scene.lights.at(0);
     const Light b = point_light({0.3f, -0.2f, 0.4f}, {0.5f, 1.0f, 2.0f});
     const auto lit_by = [&](std::vector<Light> lights) {

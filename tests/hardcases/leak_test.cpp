@@ -22,9 +22,9 @@ TEST_F(Leak, ThinWallConservative) {
        {std::tuple(16, 0.0f, 0.005), {24, 0.0f, 0.005}, {16, 0.25f, 0.02}, {16, 0.5f, 0.02}}) {
     screen::FrameOptions options;
     options.size = size;
-    options.grid_cells = cells;
-    options.grid_shift_cells = glm::vec3(shift);
-    options.scheme = screen::Scheme::conservative;
+    options.volume.grid_cells = cells;
+    options.volume.grid_shift_cells = glm::vec3(shift);
+    options.volume.scheme.scheme = Scheme::conservative;
     const Image image = render(context(), scene, camera, options).image;
     double dark = 0.0, lit = 0.0;
     int darks = 0, lits = 0;

@@ -1,0 +1,96 @@
+#include "apps/volgi/volume_options.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <charconv>
+#include <map>
+#include <memory>
+
+#include "core/error.h"
+
+namespace volgi::app {
+
+namespace {
+
+const std::map<std::string, Scheme> kSchemes = {{"ordinates", Scheme::ordinates},
+                                                {"conservative", Scheme::conservative},
+                                                {"gaitatzes2010", Scheme::gaitatzes2010},
+                                                {"lpv2009", Scheme::lpv2009}};
+
+size_t parse_bytes(const std::string& text) {
+  std::uint64_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  const std::string unit(stop, end);
+  const std::map<std::string, int> shifts = {{"", 0}, {"K", 10}, {"M", 20}, {"G", 30}};
+  const auto shift = shifts.find(unit);
+  if (error != std::errc() || shift == shifts.end() || number == 0 || number > (UINT64_MAX >> 31)) {
+    throw Error(ExitCode::usage, fmt::format("--memory-limit {}: give bytes, such as 536870912, 512M or 2G", text));
+  }
+  return size_t(number << shift->second);
+}
+
+}  // namespace
+
+Scheme scheme_from_name(const std::string& name) {
+  const auto found = kSchemes.find(name);
+  if (found == kSchemes.end())
+    throw Error(ExitCode::usage,
+                fmt::format("no scheme '{}'; there are ordinates, conservative, gaitatzes2010, lpv2009", name));
+  return found->second;
+}
+
+const char* scheme_name(Scheme scheme) {
+  for (const auto& [name, s] : kSchemes) {
+    if (s == scheme) return name.c_str();
+  }
+  return "";
+}
+
+void VolumeCommandOptions::add_to(CLI::App& command) {
+  command.add_option("--grid", grid_cells, "cells along the longest axis of the scene")
+      ->check(CLI::Range(1, VolumeOptions::kMostGridCells))
+      ->capture_default_str();
+  command.add_option("--scheme", scheme, "how the volume propagates light")
+      ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))
+      ->capture_default_str();
+  command.add_option("--sh-order", sh_order, "order of the spherical harmonics of all schemes but 'ordinates'")
+      ->check(CLI::IsMember({1, 2}))
+      ->capture_default_str();
+  command.add_option("--directions", directions, "directions of 'ordinates' (by the grid)")
+      ->check(CLI::IsMember({8, 24, 48, 80, 128}));
+  command.add_option("--bounces", bounces, "reflections to follow, 0 is direct light only (all)")
+      ->check(CLI::Range(0, 1000));
+  command
+      .add_option("--iterations", iterations,
+                  "passes over the volume: for each order with --bounces, else in all with reflections in flight "
+                  "together (until under 0.2 % of the light is left; 64 for the papers' schemes)")
+      ->check(CLI::Range(1, 100000));
+  command.add_option("--memory-limit", memory_limit, "refuse a volume that needs more bytes, such as 512M or 2G");
+  command.add_option("--threads", threads, "threads of the CPU (all)")->check(CLI::Range(1, 1024));
+}
+
+VolumeOptions VolumeCommandOptions::volume_options() const {
+  VolumeOptions o;
+  o.grid_cells = grid_cells;
+  o.scheme.scheme = scheme_from_name(scheme);
+  o.scheme.directions = directions;
+  o.scheme.sh_order = sh_order;
+  o.bounces = bounces;
+  o.iterations = iterations;
+  if (!memory_limit.empty()) o.memory_limit = parse_bytes(memory_limit);
+  if (directions && scheme != "ordinates") throw Error(ExitCode::usage, "--directions belongs to --scheme ordinates");
+  if (sh_order == 2 && scheme == "ordinates")
+    throw Error(ExitCode::usage, "--sh-order 2 belongs to the schemes of spherical harmonics, not to 'ordinates'");
+  bounce_rules(o, 0.5f);  // says what does not go together before anything is loaded
+  return o;
+}
+
+void VolumeCommandOptions::limit_threads() const {
+  if (!threads) return;
+  static std::unique_ptr<tbb::global_control> control;
+  control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, size_t(*threads));
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,31 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "propagation/volume_options.h"
+
+namespace volgi::app {
+
+/// What every command that makes a volume takes: --grid, --scheme, --sh-order, --directions, --bounces, --iterations,
+/// --memory-limit, --threads.
+struct VolumeCommandOptions {
+  std::string scheme = "ordinates";
+  std::optional<int> bounces, iterations, directions, threads;
+  int sh_order = 1;
+  int grid_cells = 32;
+  std::string memory_limit;  // bytes, with K, M or G
+
+  void add_to(CLI::App& command);
+  /// @throws Error(usage) for options that do not go together.
+  VolumeOptions volume_options() const;
+  /// Limits the number of threads from here on (--threads); for the life of the program.
+  void limit_threads() const;
+};
+
+/// Name of a scheme on the command line. @throws Error(usage) for another name, naming those that there are.
+Scheme scheme_from_name(const std::string& name);
+const char* scheme_name(Scheme scheme);
+
+}  // namespace volgi::app

@@ -1,0 +1,156 @@
+#include "propagation/volume_cpu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/surface.h"
+#include "core/visibility/light_flux.h"
+#include "voxel/emitter_pieces.h"
+#include "voxel/voxelize_cpu.h"
+
+namespace volgi {
+
+namespace {
+
+// Rays of a light through one cell's edge: a spot's layer sees the grid across about its edge, so that a lit cell gets
+// some 8 x 8 samples, each of known power.
+constexpr int kRaysACellEdge = 8;
+constexpr int kLeastRays = 256;
+constexpr int kMostRays = 2048;
+
+int light_texels(const Grid& grid) {
+  return std::clamp(kRaysACellEdge * std::max({grid.cells.x, grid.cells.y, grid.cells.z}), kLeastRays, kMostRays);
+}
+
+constexpr int kLeastCoarseGrid = 16;  // below, a coarse part has too few cells to say anything
+
+bool same_sides(const VoxelGrid& a, const VoxelGrid& b) {
+  return a.side_count() == b.side_count() &&
+         std::memcmp(a.sides().data(), b.sides().data(), a.side_count() * sizeof(shared::Side)) == 0;
+}
+
+/// The same scene in cells of twice the edge: the coarse part of `conservative`.
+Grid half_grid(const Grid& grid) {
+  Grid half = grid;
+  half.cells = (grid.cells + 1) / 2;
+  half.cell_size_m = 2.0f * grid.cell_size_m;
+  return half;
+}
+
+}  // namespace
+
+size_t expected_sides(const Scene& scene, const Grid& grid) {
+  double faces = 0.0;  // in units of h^2
+  for (const Mesh& mesh : scene.meshes) {
+    for (glm::uvec3 t : mesh.triangles) {
+      const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+      const glm::dvec3 n = glm::abs(glm::cross(b - a, c - a));
+      faces += 0.5 * (n.x + n.y + n.z);
+    }
+  }
+  const double h = double(grid.cell_size_m);
+  // No face has more than two sides.
+  return size_t(std::min(2.0 * faces / (h * h), 6.0 * double(cell_count(grid)))) + 64;
+}
+
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const SchemeOptions& scheme) {
+  const size_t cells = cell_count(grid);
+  const size_t sides = expected_sides(scene, grid);
+  constexpr size_t kSideVectors = 12;  // flux, received, sent, irradiance and the solver's own: 16 bytes each
+  size_t bytes = sides * (sizeof(shared::Side) + 16 * kSideVectors) + 12 * cells;
+  const size_t coefficients = scheme.sh_order == 2 ? 9 : 4;
+  if (scheme.scheme == Scheme::conservative) bytes += 2 * cells * coefficients * 12;
+  if (!carries_sides(scheme.scheme)) bytes += 3 * cells * coefficients * 12 + 40 * cells;
+  return bytes;
+}
+
+VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
+    : scene_(scene),
+      options_(options),
+      grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
+      rules_(bounce_rules(options, largest_albedo(scene))) {
+  const size_t expected = bytes_expected_cpu(scene, grid_, options.scheme);
+  if (options.memory_limit && expected > *options.memory_limit) {
+    throw Error(
+        ExitCode::over_limit,
+        fmt::format("--grid {}: the volume needs about {:.0f} MiB on the CPU, --memory-limit allows {:.0f}; use "
+                    "a smaller --grid",
+                    options.grid_cells, double(expected) / 1048576.0, double(*options.memory_limit) / 1048576.0));
+  }
+  if (!scene.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene);
+}
+
+VolumeCpu::~VolumeCpu() = default;
+
+void VolumeCpu::run() {
+  voxelize();
+  light_in();
+  propagate();
+  irradiate();
+}
+
+void VolumeCpu::voxelize() {
+  const bool papers = !carries_sides(options_.scheme.scheme);
+  VoxelGrid fresh = voxelize_cpu(scene_, grid_);
+  // A scene that stands still keeps its transport, with what is in flight in it.
+  if ((bounces_ || pulse_) && same_sides(fresh, voxels_)) return;
+  voxels_ = std::move(fresh);
+  const bool coarse = options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start &&
+                      std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
+  if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_));
+  if (papers) {
+    cells_ = cell_volumes_cpu(scene_, grid_);
+    pulse_ = std::make_unique<PulseVolume>(voxels_, cells_, options_.scheme);
+  } else {
+    bounces_ = std::make_unique<Bounces>(make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr));
+  }
+}
+
+void VolumeCpu::light_in() {
+  flux_.emitted.assign(voxels_.side_count(), glm::vec4(0.0f));
+  flux_.punctual.assign(voxels_.side_count(), glm::vec4(0.0f));
+  flux_.lost = glm::vec3(0.0f);
+  const std::vector<FluxSample> pieces = emitter_pieces(scene_, grid_);
+  emits_ = !pieces.empty();
+  deposit(voxels_, pieces, flux_.emitted, flux_.lost);
+  if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_)), flux_.punctual, flux_.lost);
+}
+
+void VolumeCpu::propagate() {
+  if (bounces_) {
+    report_ = bounces_->run(voxels_, flux_, emits_, rules_);
+    return;
+  }
+  std::vector<glm::vec4> all = flux_.punctual;
+  for (size_t i = 0; i < all.size(); ++i) all[i] += flux_.emitted[i];
+  report_ = pulse_->run(all, options_.iterations.value_or(VolumeOptions::kPulseIterations));
+}
+
+void VolumeCpu::irradiate() {
+  if (bounces_) irradiance_ = side_irradiance(voxels_, flux_, *bounces_);
+}
+
+const CellVolumes& VolumeCpu::cells() {
+  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_);
+  return cells_;
+}
+
+RadianceVolume VolumeCpu::radiance() {
+  RadianceVolume volume = pulse_ ? pulse_->radiance() : bounces_->transport().radiance(bounces_->sent(voxels_, flux_));
+  for (auto& grid : volume.sh) grid->setTransform(world_from_index(grid_, scene_.world_origin));
+  return volume;
+}
+
+size_t VolumeCpu::bytes() const {
+  size_t sum = voxels_.bytes() + half_voxels_.bytes();
+  sum += (flux_.emitted.size() + flux_.punctual.size()) * sizeof(glm::vec4);
+  if (bounces_) sum += bounces_->transport().bytes() + 4 * voxels_.side_count() * sizeof(glm::vec4);
+  if (pulse_) sum += pulse_->bytes();
+  return sum;
+}
+
+}  // namespace volgi

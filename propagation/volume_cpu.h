@@ -1,0 +1,64 @@
+#pragma once
+#include <memory>
+
+#include "core/scene.h"
+#include "core/visibility/embree_scene.h"
+#include "propagation/bounces.h"
+#include "propagation/pulse_volume.h"
+#include "propagation/volume_options.h"
+#include "voxel/cell_volumes.h"
+
+namespace volgi {
+
+/// The whole volume subsystem on the CPU, without any GL: voxelization, light in by Embree rays, propagation,
+/// irradiance per side. run() does all of it; the stages are apart for timers and for the cross-check.
+class VolumeCpu {
+ public:
+  /// @param scene  must outlive the volume. Says what memory it is going to take before it takes it (stderr is silent;
+  ///               see bytes_expected).
+  /// @throws Error(usage) for options that make no sense, Error(over_limit) above options.memory_limit, and as
+  ///   make_grid.
+  VolumeCpu(const Scene& scene, const VolumeOptions& options);
+  ~VolumeCpu();
+
+  void run();
+  // The stages of run(), in this order.
+  void voxelize();
+  void light_in();
+  void propagate();
+  void irradiate();
+
+  const Grid& grid() const { return grid_; }
+  const VoxelGrid& voxels() const { return voxels_; }
+  const CellVolumes& cells();  // voxelized now if the scheme did not need them
+  const SideFlux& flux() const { return flux_; }
+  const SideIrradiance& irradiance() const { return irradiance_; }  // of schemes that carry sides
+  const BounceReport& report() const { return report_; }
+  /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
+  RadianceVolume radiance();
+  bool emits() const { return emits_; }
+  size_t bytes() const;
+
+ private:
+  const Scene& scene_;
+  VolumeOptions options_;
+  Grid grid_;
+  BounceRules rules_;
+  std::unique_ptr<EmbreeScene> embree_;
+  VoxelGrid voxels_, half_voxels_;
+  CellVolumes cells_;
+  SideFlux flux_;
+  std::unique_ptr<Bounces> bounces_;
+  std::unique_ptr<PulseVolume> pulse_;
+  SideIrradiance irradiance_;
+  BounceReport report_;
+  bool emits_ = false;
+};
+
+/// Sides that the scene's triangles will have on the grid, from their areas (each shows s = |n_x|+|n_y|+|n_z| times its
+/// area, twice); what hides behind another surface in a cell is counted too, so this is seldom too low.
+size_t expected_sides(const Scene& scene, const Grid& grid);
+/// Memory that a volume on the CPU is going to take [bytes], for what is said and refused before it is taken.
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const SchemeOptions& scheme);
+
+}  // namespace volgi

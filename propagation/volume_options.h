@@ -1,0 +1,32 @@
+#pragma once
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "propagation/bounce_rules.h"
+#include "propagation/scheme.h"
+
+namespace volgi {
+
+/// What a volume is asked for, on either backend.
+struct VolumeOptions {
+  int grid_cells = 32;               // along the longest axis, 1 ... 256
+  glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
+  SchemeOptions scheme;
+  std::optional<int> bounces;     // BounceRules
+  std::optional<int> iterations;  // BounceRules; of the papers' schemes, kPulseIterations unless given
+  BounceRules::Solver solver = BounceRules::Solver::automatic;
+  bool warm_start = false;
+  std::optional<int> passes_a_run;
+  /// Refused above it [bytes]; none: no limit.
+  std::optional<size_t> memory_limit;
+
+  static constexpr int kMostGridCells = 256;
+  static constexpr int kPulseIterations = 64;  // Gaitatzes 2010, table 1, "room"
+};
+
+/// The solver's rules for a scene. @throws Error(usage) for combinations that make no sense, in words of the command
+/// line.
+BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
+
+}  // namespace volgi

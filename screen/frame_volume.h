@@ -1,0 +1,40 @@
+#pragma once
+#include <memory>
+
+#include "core/gl/pass_timer.h"
+#include "core/gl/scene_buffers.h"
+#include "propagation/volume_options.h"
+#include "screen/gbuffer.h"
+#include "screen/reflective_shadow_map.h"
+
+namespace volgi::screen {
+
+/// What the volume did, for --stats.
+struct VolumeReport {
+  bool on_gpu = false;
+  glm::ivec3 grid{0};
+  size_t sides = 0;
+  BounceReport bounces;
+  glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
+  glm::vec3 lost{0.0f};      // part of it that found no side [W]
+  size_t memory_bytes = 0;
+};
+
+/// The volume subsystem's part of a frame, wherever it runs: light in, propagation, its light on every pixel.
+class FrameVolume {
+ public:
+  virtual ~FrameVolume() = default;
+  virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+                   const Camera& camera, gl::PassTimer& timer) = 0;
+  virtual const gl::Texture& direct() const = 0;    // RGBA32F: first arrival of emission, reflected to the viewer
+  virtual const gl::Texture& indirect() const = 0;  // RGBA32F [W m^-2 sr^-1]
+  /// Waits for the GPU; after a frame, not in one.
+  virtual VolumeReport report() const = 0;
+};
+
+/// @param scene  must outlive the volume.
+/// @throws Error as Frame.
+std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
+std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
+
+}  // namespace volgi::screen

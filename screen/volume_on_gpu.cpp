@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/surface.h"
+#include "propagation/bounces_gl.h"
+#include "propagation/side_irradiance_gl.h"
+#include "propagation/transport_conservative_gl.h"
+#include "propagation/transport_ordinates_gl.h"
+#include "screen/frame_volume.h"
+#include "screen/inject_reflective_shadow_map.h"
+#include "screen/volume_gather.h"
+#include "voxel/emitter_pieces.h"
+#include "voxel/sliced_voxelization.h"
+
+namespace volgi::screen {
+
+namespace {
+
+std::unique_ptr<TransportGl> make_transport_gl(const Grid& grid, const SchemeOptions& options) {
+  if (options.scheme == Scheme::conservative) return std::make_unique<ConservativeTransportGl>(grid);
+  return std::make_unique<OrdinatesTransportGl>(grid, options.directions.value_or(directions_for_grid(grid.cells)));
+}
+
+/// Schemes that carry light from sides to sides.
+class SidesOnGpu : public FrameVolume {
+ public:
+  SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+      : scene_(scene),
+        rules_(bounce_rules(options, largest_albedo(scene))),
+        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
+        bounces_(make_transport_gl(voxelization_.voxels().grid, options.scheme)),
+        gather_(size),
+        emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
+
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+           const Camera& camera, gl::PassTimer& timer) override {
+    const VoxelGridGl& voxels = voxelization_.voxels();
+    voxelization_.run(buffers, timer);
+    flux_.begin(voxels);
+    flux_.inject_emitters(voxels, emitters_, timer);
+    inject_.run(voxels, maps, scene_, flux_, timer);
+    bounce_report_ = bounces_.run(voxels, flux_, !emitters_.empty(), rules_, timer);
+    irradiance_.run(voxels, flux_, bounces_, timer);
+    gather_.run(gbuffer, camera, voxels, irradiance_.direct(), irradiance_.indirect(), timer);
+  }
+  const gl::Texture& direct() const override { return gather_.direct(); }
+  const gl::Texture& indirect() const override { return gather_.indirect(); }
+
+  VolumeReport report() const override {
+    VolumeReport r;
+    r.on_gpu = true;
+    r.grid = voxelization_.voxels().grid.cells;
+    r.sides = voxelization_.voxels().side_count.download<std::uint32_t>(1)[0];
+    r.bounces = bounce_report_;
+    r.lost = flux_.lost();
+    for (const gl::Buffer* flux : {&flux_.emitted(), &flux_.punctual()}) {
+      for (glm::vec4 f : flux->download<glm::vec4>(r.sides)) r.injected += glm::vec3(f);
+    }
+    r.memory_bytes = voxelization_.bytes() + flux_.bytes() + bounces_.bytes() + irradiance_.bytes() + gather_.bytes();
+    return r;
+  }
+
+ private:
+  const Scene& scene_;
+  BounceRules rules_;
+  SlicedVoxelization voxelization_;
+  SideFluxGl flux_;
+  InjectReflectiveShadowMap inject_;
+  BouncesGl bounces_;
+  SideIrradianceGl irradiance_;
+  VolumeGather gather_;
+  std::vector<FluxSample> emitters_;
+  BounceReport bounce_report_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  return std::make_unique<SidesOnGpu>(scene, options, size);
+}
+
+}  // namespace volgi::screen

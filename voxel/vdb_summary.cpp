@@ -1,0 +1,83 @@
+#include "voxel/vdb_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "voxel/vdb_file.h"
+
+namespace volgi {
+namespace {
+
+template <typename GridType>
+void add_ranges(const GridType& grid, GridSummary& summary) {
+  constexpr int count = channel_count<typename GridType::ValueType>();
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<ChannelRange> ranges(size_t(count), ChannelRange{infinity, -infinity, 0.0});
+  double finite_cells = 0.0;
+  for (auto it = grid.cbeginValueOn(); it; ++it) {
+    const auto cells = it.getVoxelCount();
+    bool finite = true;
+    for (int c = 0; c < count; ++c) finite = finite && std::isfinite(channel(*it, c));
+    if (!finite) {
+      summary.not_finite += cells;
+      continue;
+    }
+    finite_cells += double(cells);
+    for (int c = 0; c < count; ++c) {
+      ChannelRange& range = ranges[size_t(c)];
+      const double value = channel(*it, c);
+      range.minimum = std::min(range.minimum, value);
+      range.maximum = std::max(range.maximum, value);
+      range.mean += value * double(cells);
+    }
+  }
+  if (finite_cells == 0.0) return;
+  for (ChannelRange& range : ranges) range.mean /= finite_cells;
+  summary.channels = std::move(ranges);
+}
+
+std::string text_of(const openvdb::MetaMap& metadata, const char* key) {
+  const openvdb::Metadata::ConstPtr value = metadata[key];
+  return value ? value->str() : std::string();
+}
+
+bool is_said_elsewhere(const std::string& key) {
+  using openvdb::GridBase;
+  for (const char* known :
+       {GridBase::META_GRID_NAME, GridBase::META_GRID_CLASS, GridBase::META_VECTOR_TYPE, kUnitKey, kDescriptionKey})
+    if (key == known) return true;
+  return key.starts_with("file_");  // OpenVDB's own statistics
+}
+
+}  // namespace
+
+GridSummary summarise(const openvdb::GridBase& grid) {
+  GridSummary s;
+  s.name = grid.getName();
+  s.type = grid.valueType();
+  s.unit = text_of(grid, kUnitKey);
+  s.description = text_of(grid, kDescriptionKey);
+  s.grid_class = openvdb::GridBase::gridClassToString(grid.getGridClass());
+  if (s.type.starts_with("vec")) s.vector_type = openvdb::GridBase::vecTypeToString(grid.getVectorType());
+  s.active_cells = grid.activeVoxelCount();
+  s.memory_bytes = grid.memUsage();
+  s.cell_size_m = grid.voxelSize();
+  s.index_box = grid.evalActiveVoxelBoundingBox();
+  if (s.active_cells == 0 || s.index_box.empty()) return s;
+  const openvdb::BBoxd cells(s.index_box.min().asVec3d() - 0.5, s.index_box.max().asVec3d() + 0.5);
+  s.world_box = grid.transform().indexToWorld(cells);
+  const openvdb::Vec3d extent = cells.extents();
+  s.active_share = double(s.active_cells) / (extent.x() * extent.y() * extent.z());
+  grid.apply<NumberGrids>([&](const auto& typed) { add_ranges(typed, s); });
+  return s;
+}
+
+std::vector<std::pair<std::string, std::string>> metadata_texts(const openvdb::MetaMap& metadata) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it)
+    if (it->second && !is_said_elsewhere(it->first)) texts.emplace_back(it->first, it->second->str());
+  return texts;
+}
+
+}  // namespace volgi
