@@ -34,7 +34,8 @@ void BounceRules::check(bool linear) const {
     refuse("amortised bounces carry all of them, run after run: leave out either the passes a run or --bounces");
   }
   if (passes_a_run && iterations) {
-    refuse("amortised bounces never count iterations from the start: leave out either the passes a run or --iterations");
+    refuse(
+        "amortised bounces never count iterations from the start: leave out either the passes a run or --iterations");
   }
   if (solver != Solver::conjugate_gradients) return;
   if (!linear) refuse("conjugate gradients need a linear scheme: use --scheme ordinates or the plain solver");

@@ -31,6 +31,11 @@ struct BounceRules {
   static constexpr float kLeastAbsorption = 0.01f;
   /// 0.2 % at the largest albedo that counts, 0.99, needs 1,300.
   static constexpr int kMostOrders = 5000;
+  /// Conjugate gradients take no bounce to lose less than this part (in the mean over all sides), or a closed white
+  /// room would have no answer; and no more passes than that can need, sqrt(1/kLeastLoss) / 2 · ln(2 / (kTolerance /
+  /// 100)).
+  static constexpr double kLeastLoss = 1e-4;
+  static constexpr int kMostConjugate = 600;
 
   float absorption() const;
   /// All orders in flight together: what orders there are cannot be told apart afterwards.
@@ -49,8 +54,8 @@ struct BounceRules {
   bool conjugate_gradients(bool linear) const;
   /// Whether the last run's answer may be the start.
   bool continues() const { return passes_a_run || (warm_start && !bounces && !iterations); }
-  /// Amortised, with emission: one order in so many renews its first arrival, the others carry bounces. Once a run where
-  /// an order is one pass.
+  /// Amortised, with emission: one order in so many renews its first arrival, the others carry bounces. Once a run
+  /// where an order is one pass.
   int arrival_cycle(bool iterative) const;
 };
 

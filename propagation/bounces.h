@@ -35,21 +35,28 @@ class Bounces {
 
  private:
   using Powers = std::vector<glm::vec4>;
-  struct Run;
+  struct Run {
+    const VoxelGrid& voxels;
+    const SideFlux& flux;
+    bool has_emission;
+    const BounceRules& rules;
+  };
   void make_room(const Run& run);
-  glm::dvec3 carry(const Powers& sent, BounceReport& report, const BounceRules& rules);
+  void carry(const Powers& sent, const BounceRules& rules, BounceReport& report);
+  void send_emission(const Run& run);
   void arrival_of_emission(const Run& run, BounceReport& report);
-  void orders(const Run& run, BounceReport& report);
-  void renewals(const Run& run, BounceReport& report);
-  void solve_conjugate(const Run& run, BounceReport& report);
+  glm::vec4 set_source(const Run& run);
+  void orders(const Run& run, int most, BounceReport& report);
+  void send_all();
+  glm::dvec3 publish();
+  void renewals(const Run& run, glm::vec4 share, BounceReport& report);
+  void solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report);
+  void begin_order(const Run& run);
   void amortised(const Run& run, BounceReport& report);
-  void set_source(const Run& run);
-  glm::vec3 start_share(bool warm);
-  glm::dvec3 renew(const glm::vec3& share, Powers& change);
 
   std::unique_ptr<Transport> transport_;
   Powers received_direct_, received_indirect_;
-  Powers response_;                 // rgb: returned fraction f, w: coverage tau
+  Powers response_;                  // rgb: returned fraction f, w: coverage tau
   Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]
   glm::dvec3 source_power_{0.0};     // of the last run, in all [W]
   // Amortised: an order may go on in the next run.

@@ -1,24 +1,25 @@
 #include "propagation/bounces_gl.h"
 
 #include <chrono>
-#include <string>
 
-#include "core/log.h"
+#include "core/error.h"
 
 namespace volgi {
 
 namespace {
 
-constexpr int kMostOrders = 5000;  // 0.2 % at the largest albedo that counts, 0.99, needs 1,300
-
-void announce_long_run(double seconds_an_order, const BounceRules& rules) {
-  double estimate = seconds_an_order * rules.expected_orders();
-  if (rules.together() || estimate < 60.0) return;
-  warn_once("light propagation is going to take up to " + std::to_string(int(estimate)) + " s (largest albedo " +
-            std::to_string(rules.largest_albedo).substr(0, 4) + "); --bounces or a smaller --grid shorten it");
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
+
+struct BouncesGl::Run {
+  const VoxelGridGl& voxels;
+  const SideFluxGl& flux;
+  bool has_emission;
+  const BounceRules& rules;
+};
 
 BouncesGl::BouncesGl(std::unique_ptr<TransportGl> transport)
     : transport_(std::move(transport)),
@@ -29,14 +30,29 @@ BouncesGl::BouncesGl(std::unique_ptr<TransportGl> transport)
       partials_(64 * sizeof(glm::vec4)),
       readback_(sizeof(glm::vec4), 2) {}
 
-void BouncesGl::make_room(const VoxelGridGl& voxels) {
-  if (capacity_ != voxels.side_capacity) {
-    capacity_ = voxels.side_capacity;
+void BouncesGl::make_room(const Run& run) {
+  const bool amortised = run.rules.passes_a_run.has_value();
+  bool continues = run.rules.continues();
+  if (capacity_ != run.voxels.side_capacity) {
+    capacity_ = run.voxels.side_capacity;
+    continues = false;
     for (gl::Buffer* b : {&received_, &sent_, &received_direct_, &received_indirect_}) {
       *b = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
     }
   }
-  for (gl::Buffer* b : {&received_, &received_direct_, &received_indirect_}) b->clear();
+  if (!continues) received_indirect_.clear();
+  // Amortised runs keep the arrival of emission, and what is in flight.
+  if (!continues || !amortised || !run.has_emission) received_direct_.clear();
+  if (!continues || !amortised) {
+    received_.clear();
+    in_flight_ = false;
+    orders_begun_ = 0;
+    if (solver_) solver_->drop_sums();
+  }
+  if (!run.rules.continues() && !run.rules.conjugate_gradients(linear())) return;
+  if (!solver_) solver_ = std::make_unique<BounceSolverGl>();
+  solver_->make_room(capacity_);
+  solver_->forget_other_sides(run.voxels, powers());
 }
 
 void BouncesGl::next_order(const VoxelGridGl& voxels, const gl::Buffer& total, const gl::Buffer* source,
@@ -66,26 +82,47 @@ void BouncesGl::request_sent(const VoxelGridGl& voxels) {
   readback_.push(sum_);
 }
 
+glm::vec3 BouncesGl::pop_sent() {
+  glm::vec4 sum;
+  readback_.pop(&sum);
+  return glm::vec3(sum);
+}
+
 BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission,
                             const BounceRules& rules, gl::PassTimer& timer) {
+  rules.check(linear());
   auto scope = timer.scope("propagation/propagate");
-  make_room(voxels);
+  const Run run{voxels, flux, has_emission, rules};
+  make_room(run);
   BounceReport report;
-  int orders = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : kMostOrders;
+  if (rules.passes_a_run) {
+    amortised(run, report);
+  } else if (rules.conjugate_gradients(linear())) {
+    solve_conjugate(run, report);
+  } else if (rules.continues()) {
+    renewals(run, report);
+  } else {
+    orders(run, report);
+  }
+  return report;
+}
+
+/// One order after another, from black: the series K e + K f K e + ...
+void BouncesGl::orders(const Run& run, BounceReport& report) {
+  const BounceRules& rules = run.rules;
+  int orders = rules.bounces ? *rules.bounces + (run.has_emission ? 1 : 0) : BounceRules::kMostOrders;
   if (rules.iterations && !transport_->iterative()) orders = std::min(orders, *rules.iterations);
   // received_ is zero here: this only makes the first order's sources into what sides send.
-  next_order(voxels, received_indirect_, has_emission ? &flux.emitted() : &flux.punctual(), false);
+  next_order(run.voxels, received_indirect_, run.has_emission ? &run.flux.emitted() : &run.flux.punctual(), false);
   for (int order = 0; order < orders; ++order) {
-    const bool arrival_of_emission = has_emission && order == 0;
+    const bool arrival_of_emission = run.has_emission && order == 0;
     BounceRules order_rules = rules;
     if (arrival_of_emission && rules.together()) order_rules.iterations.reset();  // an order by itself
     const auto start = std::chrono::steady_clock::now();
     BounceReport carried;
-    request_sent(voxels);
-    transport_->carry(voxels, sent_, received_, order_rules, carried);
-    glm::vec4 sum;
-    readback_.pop(&sum);
-    const glm::vec3 sent(sum);
+    request_sent(run.voxels);
+    transport_->carry(run.voxels, sent_, received_, order_rules, carried);
+    const glm::vec3 sent = pop_sent();
     report.passes += carried.passes;
     const bool dark = sent == glm::vec3(0.0f) && !arrival_of_emission;
     if (dark || (!rules.bounces && order > 0 && rules.orders_ended(sent, report.sent))) {
@@ -96,19 +133,155 @@ BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, b
     report.orders += 1;
     report.sent += sent;
     report.left += carried.left;
-    if (order == 0)
-      announce_long_run(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), rules);
+    if (order == 0) announce_long_run(seconds_since(start), rules);
     const bool together = transport_->iterative() && order_rules.together();
-    next_order(voxels, arrival_of_emission ? received_direct_ : received_indirect_,
-               arrival_of_emission ? &flux.punctual() : nullptr, together);
+    next_order(run.voxels, arrival_of_emission ? received_direct_ : received_indirect_,
+               arrival_of_emission ? &run.flux.punctual() : nullptr, together);
     if (together) break;
   }
-  return report;
+}
+
+/// Emission's first arrival, where all bounces follow at once. Its power is popped by the caller.
+void BouncesGl::arrival_of_emission(const Run& run, BounceReport& report) {
+  next_order(run.voxels, received_indirect_, &run.flux.emitted(), false);
+  request_sent(run.voxels);
+  transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  next_order(run.voxels, received_direct_, nullptr, false);
+  report.orders += 1;
+}
+
+/// P <- K(e + fP) until that changes nothing any more.
+void BouncesGl::renewals(const Run& run, BounceReport& report) {
+  if (run.has_emission) arrival_of_emission(run, report);
+  solver_->set_source(run.voxels, powers(), run.flux.punctual());
+  solver_->send_all(run.voxels, powers(), true);
+  const glm::vec3 arrival = run.has_emission ? pop_sent() : glm::vec3(0.0f);
+  const glm::vec3 arrival_left = report.left;
+  glm::vec3 order_left(0.0f);
+  const auto start = std::chrono::steady_clock::now();
+  for (int order = 0; order < BounceRules::kMostOrders; ++order) {
+    BounceReport carried;
+    transport_->carry(run.voxels, sent_, received_, run.rules, carried);
+    report.passes += carried.passes;
+    if (order == 1) announce_long_run(seconds_since(start), run.rules);
+    if (order > 0) {
+      const BounceSolverGl::Sums sums = solver_->pop_sums();
+      report.sent = arrival + sums.total_sent;
+      report.left = arrival_left + order_left + sums.next_sent;
+      report.converged = run.rules.orders_ended(sums.next_sent, report.sent);
+      if (report.converged) return;
+    }
+    order_left = carried.left;
+    report.orders += 1;
+    solver_->publish(run.voxels, powers());
+    solver_->push_sums();
+  }
+  solver_->drop_sums();
+}
+
+void BouncesGl::solve_conjugate(const Run& run, BounceReport& report) {
+  const int most = std::min(run.rules.iterations.value_or(BounceRules::kMostConjugate), BounceRules::kMostConjugate);
+  report.conjugate_gradients = true;
+  if (run.has_emission) arrival_of_emission(run, report);
+  solver_->set_source(run.voxels, powers(), run.flux.punctual());
+  solver_->send_all(run.voxels, powers(), true);
+  transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  report.orders += 1;
+  solver_->start(run.voxels, powers());
+  solver_->push_sums();
+  const glm::vec3 arrival = run.has_emission ? pop_sent() : glm::vec3(0.0f);
+  for (int pass = 1;; ++pass) {
+    if (pass < most) transport_->carry(run.voxels, sent_, received_, run.rules, report);
+    const BounceSolverGl::Sums sums = solver_->pop_sums();
+    report.sent = arrival + sums.total_sent;
+    report.left = sums.next_sent;
+    report.converged = run.rules.orders_ended(sums.next_sent, report.sent);
+    if (report.converged || pass == most) break;
+    report.orders += 1;
+    solver_->step(run.voxels, powers());
+    solver_->push_sums();
+  }
+  solver_->end(run.voxels, powers());
+}
+
+void BouncesGl::begin_order(const Run& run) {
+  arrival_in_flight_ = run.has_emission && orders_begun_ % run.rules.arrival_cycle(transport_->iterative()) == 0;
+  ++orders_begun_;
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  received_.clear();
+  if (arrival_in_flight_) {
+    next_order(run.voxels, received_direct_, &run.flux.emitted(), false);  // adds nothing to what has arrived before
+  } else {
+    solver_->set_source(run.voxels, powers(), run.flux.punctual());
+    solver_->send_all(run.voxels, powers(), false);
+  }
+  if (auto* resumable = dynamic_cast<ResumableGl*>(transport_.get())) resumable->begin_order(run.voxels, sent_);
+  in_flight_ = true;
+}
+
+bool BouncesGl::advance_order(const Run& run, int most_passes, BounceReport& report) {
+  if (auto* resumable = dynamic_cast<ResumableGl*>(transport_.get())) {
+    return resumable->advance_order(run.voxels, received_, most_passes, run.rules, report);
+  }
+  transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  return true;
+}
+
+/// As many passes as there may be; an order that is not at its end then goes on in the next run.
+void BouncesGl::amortised(const Run& run, BounceReport& report) {
+  if (transport_->iterative() && dynamic_cast<ResumableGl*>(transport_.get()) == nullptr) {
+    throw Error(ExitCode::usage,
+                "amortised bounces: this scheme cannot interrupt an order on the GPU; use --scheme ordinates or "
+                "--backend cpu");
+  }
+  const int most = *run.rules.passes_a_run;
+  bool published = false;
+  while (report.passes < most) {
+    if (!in_flight_) begin_order(run);
+    BounceReport carried;
+    const bool ended = advance_order(run, most - report.passes, carried);
+    report.passes += std::max(carried.passes, 1);
+    if (!ended) continue;
+    in_flight_ = false;
+    report.orders += 1;
+    report.left = carried.left;
+    if (arrival_in_flight_) {
+      glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+      received_direct_.clear();
+      next_order(run.voxels, received_direct_, nullptr, false);
+    } else {
+      solver_->publish(run.voxels, powers());
+      published = true;
+    }
+  }
+  if (published) solver_->push_sums();
+  if (solver_->pending_sums() > 1) {  // what the answer before this one has come to
+    const BounceSolverGl::Sums sums = solver_->pop_sums();
+    report.sent = sums.total_sent;
+    report.left += sums.next_sent;
+    report.converged = run.rules.orders_ended(sums.next_sent, sums.total_sent);
+  }
+}
+
+gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) const {
+  const gl::Program kernel = gl::Program::compute("propagation/sent_in_all.comp.glsl");
+  gl::Buffer all(sizeof(glm::vec4) * size_t(capacity_));
+  all.clear();
+  voxels.bind();
+  received_direct_.bind_storage(6);
+  received_indirect_.bind_storage(7);
+  flux.emitted().bind_storage(8);
+  flux.punctual().bind_storage(9);
+  all.bind_storage(10);
+  kernel.use();
+  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  return all;
 }
 
 size_t BouncesGl::bytes() const {
   return transport_->bytes() + received_.bytes() + sent_.bytes() + received_direct_.bytes() +
-         received_indirect_.bytes() + sum_.bytes() + partials_.bytes();
+         received_indirect_.bytes() + sum_.bytes() + partials_.bytes() + (solver_ ? solver_->bytes() : 0);
 }
 
 }  // namespace volgi

@@ -97,9 +97,11 @@ glm::vec3 radiance_per_watt(const OrdinateSet& set, size_t i, Ordinates rule, fl
 
 OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options) {
   const int longest = std::max({cells.x, cells.y, cells.z});
-  // Between the sizes that were measured (16, 32, 64, 128) the change is at the geometric mean.
+  // Closed box, albedo 0.7, first bounce exact, RMSE of all indirect light: step with 24 at 16^3 0.51 %; characteristic
+  // with 48 at 24^3 and 32^3 0.35 and 0.39 %, at 48^3 and 64^3 0.45 and 0.49 %; with 80 0.40 and 0.44 % there; with 128
+  // 0.21 and 0.23 %. So that no finer grid is worse, 128 take over above 32^3: 80 would not do.
   OrdinateChoice choice;
-  choice.directions = longest <= 16 ? 24 : longest <= 45 ? 48 : longest <= 90 ? 80 : 128;
+  choice.directions = longest <= 16 ? 24 : longest <= 32 ? 48 : 128;
   if (options.directions) choice.directions = *options.directions;
   if (!options.directions && options.ordinates == Ordinates::characteristic) {
     choice.directions = std::max(choice.directions, 48);

@@ -48,8 +48,8 @@ struct OrdinateChoice {
 };
 /// What is asked for, and what goes with the grid where nothing is: refining the grid at fixed directions makes the
 /// answer worse, and sharper transfer shows few directions (docs/theory.md#ordinates). The step rule and 24 directions
-/// up to 16 cells; then characteristic, with 48, 80 and 128 directions. Where only one of the two is asked for, the
-/// other goes with it: characteristic with 48 directions or more, step with fewer.
+/// up to 16 cells; then characteristic, with 48 directions up to 32 cells and 128 above. Where only one of the two is
+/// asked for, the other goes with it: characteristic with 48 directions or more, step with fewer.
 OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options);
 
 /// The number of directions that goes with a grid where nothing is asked for.

@@ -1,5 +1,7 @@
 #include "propagation/transport_conservative_gl.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace volgi {
@@ -14,36 +16,55 @@ int most_passes(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.z)
 
 }  // namespace
 
-ConservativeTransportGl::ConservativeTransportGl(const Grid& grid)
-    : emit_(gl::Program::compute("propagation/emit.comp.glsl")),
-      propagate_(gl::Program::compute("propagation/propagate.comp.glsl")),
-      sum_in_flight_(gl::Program::compute("propagation/sum_in_flight.comp.glsl")),
+ConservativeTransportGl::ConservativeTransportGl(const Grid& grid, int sh_order)
+    : order_(sh_order),
+      emit_(compile("emit")),
+      propagate_(compile("propagate")),
+      sum_lobes_(compile("sum_in_flight")),
       sum_partials_(gl::Program::compute("propagation/sum_partials.comp.glsl")),
       partials_(64 * sizeof(glm::vec4)),
       sum_(sizeof(glm::vec4)),
       readback_(sizeof(glm::vec4), 2),
       grid_(grid) {
-  for (gl::Texture& t : lobes_) t = gl::Texture::make_3d(GL_RGBA32F, {grid.cells.x, grid.cells.y, 3 * grid.cells.z});
+  make_lobes();
+}
+
+gl::Program ConservativeTransportGl::compile(const char* shader) const {
+  return gl::Program::compute(fmt::format("propagation/{}.comp.glsl", shader),
+                              {fmt::format("ORDER {}", order_), "PULSE 0"});
 }
 
 void ConservativeTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                                     const BounceRules& rules, BounceReport& report) {
-  const int most = rules.iterations ? *rules.iterations : most_passes(grid_);
+  begin_order(voxels, sent);
+  while (!advance_order(voxels, received, most_passes(grid_), rules, report)) {
+  }
+}
+
+void ConservativeTransportGl::begin_order(const VoxelGridGl& voxels, const gl::Buffer& sent) {
+  readback_.drop_all();  // of an order that was not carried to its end
   emit(voxels, sent);
   request_in_flight(voxels);
-  glm::vec3 start(0.0f), now(0.0f);
-  bool ended = false;
-  for (int passes = 0; passes < most && !ended;) {
-    const int batch = std::min(kBatch, most - passes);
+  passes_ = 0;
+}
+
+bool ConservativeTransportGl::advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int most_passes_now,
+                                            const BounceRules& rules, BounceReport& report) {
+  const int most = rules.iterations ? *rules.iterations : most_passes(grid_);
+  bool ended = passes_ >= most;
+  for (int done = 0; done < most_passes_now && !ended;) {
+    const int batch = std::min({kBatch, most - passes_, most_passes_now - done});
     advance(voxels, received, batch, rules.together());
     request_in_flight(voxels);
-    now = pop_in_flight();  // as it was before this batch
-    if (passes == 0) start = now;
-    ended = !rules.iterations && rules.pulse_ended(now, start);
-    passes += batch;
+    const glm::vec3 now = pop_in_flight();  // as it was before this batch
+    if (passes_ == 0) start_ = now;
+    passes_ += batch;
+    done += batch;
     report.passes += batch;
+    ended = passes_ >= most || (!rules.iterations && rules.pulse_ended(now, start_));
   }
-  report.left += pop_in_flight();
+  if (ended) report.left += pop_in_flight();
+  return ended;
 }
 
 void ConservativeTransportGl::emit(const VoxelGridGl& voxels, const gl::Buffer& sent) {
@@ -70,16 +91,20 @@ void ConservativeTransportGl::advance(const VoxelGridGl& voxels, const gl::Buffe
   }
 }
 
-void ConservativeTransportGl::request_in_flight(const VoxelGridGl& voxels) {
+void ConservativeTransportGl::sum_in_flight(const VoxelGridGl& voxels) {
   voxels.bind();
   lobes_[current_].bind(0);
   partials_.bind_storage(10);
-  sum_in_flight_.use();
+  sum_lobes_.use();
   glDispatchCompute(64, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_.bind_storage(11);
   sum_partials_.use();
   glDispatchCompute(1, 1, 1);
+}
+
+void ConservativeTransportGl::request_in_flight(const VoxelGridGl& voxels) {
+  sum_in_flight(voxels);
   readback_.push(sum_);
 }
 
@@ -90,10 +115,46 @@ glm::vec3 ConservativeTransportGl::pop_in_flight() {
 }
 
 glm::vec3 ConservativeTransportGl::in_flight(const VoxelGridGl& voxels) {
-  request_in_flight(voxels);
-  return pop_in_flight();
+  sum_in_flight(voxels);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  return glm::vec3(sum_.download<glm::vec4>(1)[0]);
 }
 
-size_t ConservativeTransportGl::bytes() const { return partials_.bytes() + 2 * 48 * cell_count(grid_); }
+void ConservativeTransportGl::make_lobes() {
+  for (gl::Texture& t : lobes_) {
+    t = gl::Texture::make_3d(GL_RGBA32F, {grid_.cells.x, grid_.cells.y, texels() * grid_.cells.z});
+  }
+}
+
+RadianceVolumeGl ConservativeTransportGl::radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) {
+  if (!add_radiance_) add_radiance_ = compile("add_radiance");
+  RadianceVolumeGl result(grid_, order_ == 1 ? 4 : 9);
+  const gl::Buffer ignored(sent.bytes());
+  const BounceRules rules;
+  gl::Texture under_way[2] = {std::move(lobes_[0]), std::move(lobes_[1])};  // an order may have stopped between passes
+  make_lobes();
+  const int current_under_way = current_;
+  emit(voxels, sent);
+  const glm::vec3 start = in_flight(voxels);
+  for (int passes = 0; passes < most_passes(grid_); ++passes) {
+    voxels.bind();
+    lobes_[current_].bind(0);
+    result.sh.bind_image(0, GL_READ_WRITE);
+    add_radiance_->use();
+    add_radiance_->set("odd_sign", 1.0f);
+    add_radiance_->set("stored_rescaled", 1);
+    gl::dispatch(grid_.cells, kLocal);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+    if (passes % kBatch == 0 && rules.pulse_ended(in_flight(voxels), start)) break;
+    advance(voxels, ignored, 1, false);
+  }
+  for (int i = 0; i < 2; ++i) lobes_[i] = std::move(under_way[i]);
+  current_ = current_under_way;
+  return result;
+}
+
+size_t ConservativeTransportGl::bytes() const {
+  return partials_.bytes() + 2 * 16 * size_t(texels()) * cell_count(grid_);
+}
 
 }  // namespace volgi

@@ -1,5 +1,6 @@
 #pragma once
 #include "propagation/bounce_rules.h"
+#include "propagation/radiance_volume_gl.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi {
@@ -14,6 +15,8 @@ class TransportGl {
   /// @param report    passes, and power that was left in flight, are added.
   virtual void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                      const BounceRules& rules, BounceReport& report) = 0;
+  /// Radiance that `sent` (all orders together) makes in free space.
+  virtual RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) = 0;
   /// Whether an order takes a number of passes that rules.iterations can set.
   virtual bool iterative() const = 0;
   virtual size_t bytes() const = 0;

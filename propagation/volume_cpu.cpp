@@ -16,11 +16,11 @@ namespace volgi {
 
 namespace {
 
-// Rays of a light through one cell's edge: a spot's layer sees the grid across about its edge, so that a lit cell gets
-// some 8 x 8 samples, each of known power.
-constexpr int kRaysACellEdge = 8;
+// Rays of a spot's layer through one cell's edge where the layer sees the grid across its edge (a sun's has twice as
+// many): a lit cell gets some 16 samples or more. How many changes where light lands within a cell, not how much of it.
+constexpr int kRaysACellEdge = 4;
 constexpr int kLeastRays = 256;
-constexpr int kMostRays = 2048;
+constexpr int kMostRays = 1024;
 
 int light_texels(const Grid& grid) {
   return std::clamp(kRaysACellEdge * std::max({grid.cells.x, grid.cells.y, grid.cells.z}), kLeastRays, kMostRays);
@@ -117,7 +117,7 @@ void VolumeCpu::light_in() {
   const std::vector<FluxSample> pieces = emitter_pieces(scene_, grid_);
   emits_ = !pieces.empty();
   deposit(voxels_, pieces, flux_.emitted, flux_.lost);
-  if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_)), flux_.punctual, flux_.lost);
+  if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_), 0.5f * grid_.cell_size_m), flux_.punctual, flux_.lost);
 }
 
 void VolumeCpu::propagate() {

@@ -21,6 +21,10 @@ bool needs_volume(const Scene& scene, const FrameOptions& options) {
   return direct_only ? has_emission(scene) : has_emission(scene) || !scene.lights.empty();
 }
 
+bool on_gpu(Backend backend) {
+  return backend == Backend::gpu || (backend == Backend::automatic && !gl::current_is_software());
+}
+
 }  // namespace
 
 Frame::Frame(const Scene& scene, const FrameOptions& options)
@@ -34,7 +38,8 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
       compose_(options.size) {
   if (options.light == LightPart::direct) options_.volume.bounces = 0;
   if (needs_volume(scene, options_)) {
-    volume_ = make_volume_on_gpu(scene, options_.volume, options_.size);
+    volume_ = on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
+                                       : make_volume_on_cpu(scene, options_.volume, options_.size);
   } else if (budget_.emission_arrival == BounceBudget::Carrier::nobody && has_emission(scene)) {
     warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
   }

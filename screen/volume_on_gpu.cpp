@@ -17,8 +17,8 @@ namespace volgi::screen {
 namespace {
 
 std::unique_ptr<TransportGl> make_transport_gl(const Grid& grid, const SchemeOptions& options) {
-  if (options.scheme == Scheme::conservative) return std::make_unique<ConservativeTransportGl>(grid);
-  return std::make_unique<OrdinatesTransportGl>(grid, options.directions.value_or(directions_for_grid(grid.cells)));
+  if (options.scheme == Scheme::conservative) return std::make_unique<ConservativeTransportGl>(grid, options.sh_order);
+  return std::make_unique<OrdinatesTransportGl>(grid, options);
 }
 
 /// Schemes that carry light from sides to sides.

@@ -9,4 +9,16 @@ openvdb::math::Transform::Ptr world_from_index(const Grid& grid, glm::dvec3 worl
   return transform;
 }
 
+CellVolumes empty_cell_volumes(const Grid& grid, glm::dvec3 world_origin) {
+  const openvdb::math::Transform::Ptr transform = world_from_index(grid, world_origin);
+  const openvdb::Vec3s zero(0.0f);
+  CellVolumes out{openvdb::FloatGrid::create(0.0f), openvdb::Vec3SGrid::create(zero), openvdb::Vec3SGrid::create(zero),
+                  openvdb::Vec3SGrid::create(zero)};
+  out.occupancy->setTransform(transform->copy());
+  out.albedo->setTransform(transform->copy());
+  out.normal->setTransform(transform->copy());
+  out.emission->setTransform(transform->copy());
+  return out;
+}
+
 }  // namespace volgi

@@ -15,6 +15,9 @@ struct CellVolumes {
   openvdb::Vec3SGrid::Ptr emission;   // largest radiosity pi * L_e in the cell (MAX) [W m^-2]
 };
 
+/// Four grids without active cells.
+CellVolumes empty_cell_volumes(const Grid& grid, glm::dvec3 world_origin);
+
 /// Transform of every grid that volgi makes: index (i,j,k) is the centre of cell (i,j,k).
 openvdb::math::Transform::Ptr world_from_index(const Grid& grid, glm::dvec3 world_origin);
 

@@ -78,19 +78,19 @@ Slice read_slice(const openvdb::GridBase& grid, const openvdb::CoordBBox& box, S
   return slice;
 }
 
-/// Mean of the logarithm of the luminance where there is light; nothing where there is none.
-std::optional<double> log_mean_luminance(const openvdb::GridBase& grid) {
+/// Mean of the luminance's size where there is light; nothing where there is none.
+std::optional<double> mean_luminance(const openvdb::GridBase& grid) {
   double sum = 0.0, cells = 0.0;
   grid.apply<NumberGrids>([&](const auto& typed) {
     for (auto it = typed.cbeginValueOn(); it; ++it) {
-      const double luminance = glm::dot(kLuminance, as_vector(*it));
+      const double luminance = std::abs(glm::dot(kLuminance, as_vector(*it)));
       if (!(luminance > 0.0) || !std::isfinite(luminance)) continue;
-      sum += std::log(luminance) * double(it.getVoxelCount());
+      sum += luminance * double(it.getVoxelCount());
       cells += double(it.getVoxelCount());
     }
   });
   if (cells == 0.0) return std::nullopt;
-  return std::exp(sum / cells);
+  return sum / cells;
 }
 
 /// How values become colours, and what the legend says about it.
@@ -109,8 +109,13 @@ class ColorScale {
       kind_ = vector ? Kind::signed_luminance : Kind::signed_number;
     else
       kind_ = vector ? Kind::color : Kind::number;
-    end_ = largest_ > 0.0 ? largest_ : 1.0;
-    if (kind_ == Kind::color) set_exposure(grid, s);
+    const bool share = s.unit == "1" && least >= 0.0 && largest_ <= 1.0;
+    end_ = share || largest_ == 0.0 ? 1.0 : largest_;
+    // As a light meter has it: the mean becomes middle grey, 0.18, and 1 is white, where the bar ends. Near a lamp
+    // values are a thousand times those of the room.
+    const auto middle = vector && !share ? mean_luminance(grid) : std::nullopt;
+    exposed_ = middle && kind_ != Kind::normal;
+    if (exposed_) end_ = *middle / 0.18;
   }
 
   glm::vec3 operator()(glm::dvec3 v) const {
@@ -128,7 +133,7 @@ class ColorScale {
         break;
     }
     const glm::vec3 scaled(glm::max(v, 0.0) / end_);
-    const glm::vec3 display = tone_mapped_ ? tone_map(scaled) : scaled;
+    const glm::vec3 display = exposed_ ? tone_map(scaled) : scaled;
     return {srgb_encode(display.x), srgb_encode(display.y), srgb_encode(display.z)};
   }
 
@@ -138,27 +143,15 @@ class ColorScale {
   double end() const { return end_; }
   std::string note() const {
     if (kind_ == Kind::normal) return "colour = 0.5 + 0.5 n";
-    if (kind_ == Kind::signed_luminance) return "luminance";
-    if (tone_mapped_) return fmt::format("tone mapped, largest {:.4g}", largest_);
-    return {};
+    if (!exposed_) return {};
+    return fmt::format("{}, largest {:.4g}", kind_ == Kind::color ? "tone mapped" : "luminance", largest_);
   }
 
  private:
   enum class Kind { number, signed_number, signed_luminance, color, normal };
 
-  // The luminance's logarithmic mean becomes middle grey, 0.18, and 1 is white (Reinhard et al. 2002, eq. 2): the bar
-  // ends there.
-  void set_exposure(const openvdb::GridBase& grid, const GridSummary& s) {
-    if (s.unit == "1" && largest_ <= 1.0) {
-      end_ = 1.0;
-      return;
-    }
-    tone_mapped_ = true;
-    if (const auto middle = log_mean_luminance(grid)) end_ = *middle / 0.18;
-  }
-
   Kind kind_ = Kind::number;
-  bool tone_mapped_ = false;
+  bool exposed_ = false;
   double largest_ = 0.0, end_ = 1.0;
 };
 

@@ -16,8 +16,9 @@ struct SlicePlane {
 
 /// Slices of a grid beside each other, as display values: the cells of the active box, enlarged without a filter, all
 /// at one scale, each with its place [m], and a colour bar with the unit underneath.
-/// Numbers from 0: viridis. Numbers and colours with a negative value: diverging around 0 (colours by luminance).
-/// Colours: as they are when they are shares (unit 1, up to 1), else tone mapped with one exposure for the whole grid.
+/// Numbers: viridis from 0 to the largest, to 1 for shares (unit 1, none above); diverging around 0 where one is
+/// negative. Colours: as they are when they are shares, else tone mapped; by luminance, diverging, where one is
+/// negative; both with one exposure for the whole grid, so that slices compare.
 /// Normals: 0.5 + 0.5 n. Cells without a value are grey, those that are not finite magenta.
 /// Orientation: y is up and z = const looks along -z; y = const is seen from above, x to the right; x = const has z to
 /// the right.

@@ -2,145 +2,283 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 #include "core/gl/raster_state.h"
 
 namespace volgi {
 
 namespace {
-constexpr int kGroup = 256;      // list_sides_*.comp.glsl
-constexpr int kAreaSamples = 4;  // along each edge of a face; 16 of them count its area to 6 % at an edge
+
+constexpr int kGroup = 256;                     // cells or faces of a group in coverage, list_sides_*.comp.glsl
+constexpr size_t kSurfaceBytes = 2 * 48;        // surfaces.glsl, of a face
+constexpr float kFootprintAlpha = 1.0f / 3.0f;  // cells: alpha belongs to a fine line,
+constexpr float kFootprintAlbedo = 1.0f;        // albedo to a face
+
+/// Groups of `in_group` for `count` cells, faces or sides (shaders/voxel/linear_id.glsl).
+void dispatch_linear(size_t count, size_t in_group) {
+  constexpr size_t kAlongX = 1 << 15;
+  const size_t groups = std::max<size_t>(1, (count + in_group - 1) / in_group);
+  glDispatchCompute(GLuint(std::min(groups, kAlongX)), GLuint((groups + kAlongX - 1) / kAlongX), 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void fill(const gl::Buffer& buffer, GLuint value) {
+  glClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
+}
+
+bool has_alpha(const gl::SceneBuffers& scene) {
+  return std::any_of(scene.materials().begin(), scene.materials().end(),
+                     [](const Material& m) { return m.alpha_mode != AlphaMode::opaque; });
+}
+
+std::vector<std::string> alpha_define(bool alpha) {
+  return alpha ? std::vector<std::string>{"ALPHA 1"} : std::vector<std::string>{};
+}
+
+std::uint32_t with_headroom(std::uint32_t count) { return count + count / 5 + 64; }
+
+size_t faces(const Grid& grid, int axis) { return size_t(shared::face_count(grid, axis)); }
+
 }  // namespace
 
-void VoxelGridGl::bind() const {
-  grid_block.bind_uniform(0);
-  cell_sides.bind_storage(3);
-  sides.bind_storage(4);
-  side_count.bind_storage(5);
-}
-
-std::vector<shared::Side> VoxelGridGl::download_sides() const {
-  auto count = side_count.download<std::uint32_t>(1)[0];
-  return sides.download<shared::Side>(count);
-}
-
-SlicedVoxelization::SlicedVoxelization(const Grid& grid)
-    : slice_(gl::Program::raster("voxel/slice")),
+SlicedVoxelization::SlicedVoxelization(const Grid& grid, VoxelizationMethod method)
+    : method_(method),
+      number_(gl::Program::compute("voxel/number_surfaces.comp.glsl")),
+      coverage_(gl::Program::compute("voxel/coverage.comp.glsl")),
       count_(gl::Program::compute("voxel/list_sides_count.comp.glsl")),
       scan_(gl::Program::compute("voxel/list_sides_scan.comp.glsl")),
       offset_(gl::Program::compute("voxel/list_sides_offset.comp.glsl")),
-      side_area_(gl::Program::raster("voxel/side_area")),
+      fill_(gl::Program::compute("voxel/list_sides_fill.comp.glsl")),
       collect_area_(gl::Program::compute("voxel/collect_area.comp.glsl")) {
+  GLint storage_blocks = 0;
+  glGetIntegerv(GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS, &storage_blocks);
+  if (storage_blocks < 12) method_ = VoxelizationMethod::sliced;  // the single pass binds three families at once
+  write_ = gl::Program::raster(base_name(), std::vector<std::string>{"WRITE_SURFACES 1"});
   voxels_.grid = grid;
   voxels_.grid_block = gl::Buffer(sizeof(Grid), &grid);
   voxels_.cell_sides = gl::Buffer(8 * cell_count(grid));
   voxels_.side_count = gl::Buffer(sizeof(std::uint32_t));
   voxels_.side_count.clear();
-  counted_ = std::make_unique<gl::Readback>(sizeof(std::uint32_t), 2);
+  wanted_buffer_ = gl::Buffer(sizeof(Wanted));
+  wanted_buffer_.clear();
+  counted_ = std::make_unique<gl::Readback>(sizeof(Wanted), 1);
   groups_ = int((cell_count(grid) + kGroup - 1) / kGroup);
   group_totals_ = gl::Buffer(sizeof(std::uint32_t) * size_t(groups_));
   for (int axis = 0; axis < 3; ++axis) {
-    size_t bytes = sizeof(std::uint32_t) * size_t(shared::face_count(grid, axis));
-    key_low_[axis] = gl::Buffer(bytes);
-    key_high_[axis] = gl::Buffer(bytes);
-    opacity_[axis] = gl::Buffer(bytes);
-    const glm::ivec2 columns(grid.cells[shared::axis_b(axis)], grid.cells[shared::axis_c(axis)]);
-    columns_[axis] = gl::Framebuffer::without_attachments(columns);
-    fine_columns_[axis] = gl::Framebuffer::without_attachments(kAreaSamples * columns);
+    Family& f = families_[size_t(axis)];
+    for (gl::Buffer* b : {&f.key_low, &f.key_high, &f.blocked, &f.entries, &f.coverage}) {
+      *b = gl::Buffer(sizeof(std::uint32_t) * faces(grid, axis));
+    }
   }
+  columns_ = gl::Framebuffer::without_attachments(glm::ivec2(std::max({grid.cells.x, grid.cells.y, grid.cells.z})));
 }
 
-void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) {
+const char* SlicedVoxelization::base_name() const {
+  return method_ == VoxelizationMethod::sliced ? "voxel/slice" : "voxel/single_pass";
+}
+
+void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) { run_axes(scene, timer, 0, 2); }
+
+void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer, int axis) {
+  assert(axis >= 0 && axis < 3);
+  const bool full = voxels_.side_capacity == 0 || method_ == VoxelizationMethod::single_pass;
+  run_axes(scene, timer, full ? 0 : axis, full ? 2 : axis);
+}
+
+void SlicedVoxelization::run_axes(const gl::SceneBuffers& scene, gl::PassTimer& timer, int first_axis, int last_axis) {
   {
     auto scope = timer.scope("voxel/slice");
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::uint32_t far_away = 0xffffffffu;
-      glClearNamedBufferData(key_low_[axis].id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &far_away);
-      glClearNamedBufferData(key_high_[axis].id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &far_away);
-      opacity_[axis].clear();
+    mark(scene, first_axis, last_axis);
+    if (counted_->pending() > 0) counted_->pop(&wanted_);  // the run before
+    for (int axis = first_axis; axis <= last_axis; ++axis) {
+      make_room_for_surfaces(axis);
+      number_surfaces(axis);
     }
-    slice(scene, false);
+    write_surfaces(scene, first_axis, last_axis);
   }
   {
     auto scope = timer.scope("voxel/list_sides");
+    find_coverage();
     list_sides();
-  }
-  std::uint32_t count = 0;
-  counted_->push(voxels_.side_count);
-  if (voxels_.side_capacity == 0 || counted_->pending() > 1) {
-    counted_->pop(&count);
-    make_room(count);
-  }
-  {
-    auto scope = timer.scope("voxel/slice");
-    slice(scene, true);
+    fill_sides();
+    counted_->push(wanted_buffer_);
   }
   auto scope = timer.scope("voxel/side_area");
   count_area(scene);
 }
 
-void SlicedVoxelization::make_room(std::uint32_t side_count) {
-  if (voxels_.side_capacity != 0 && side_count <= voxels_.side_capacity) return;
-  voxels_.side_capacity = side_count + side_count / 5 + 64;
+void SlicedVoxelization::mark(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
+  alpha_ = has_alpha(scene);
+  for (int axis = first_axis; axis <= last_axis; ++axis) {
+    Family& f = families_[size_t(axis)];
+    fill(f.key_low, 0xffffffffu);
+    fill(f.key_high, 0xffffffffu);
+    fill(f.blocked, 0);
+    if (alpha_ && f.haze.bytes() == 0) f.haze = gl::Buffer(sizeof(std::uint32_t) * faces(voxels_.grid, axis));
+    if (alpha_) fill(f.haze, 0);
+  }
+  auto& program = mark_[size_t(alpha_)];
+  if (!program) program = gl::Program::raster(base_name(), alpha_define(alpha_));
+  program->set("footprint", kFootprintAlpha);
+  raster(scene, *program, first_axis, last_axis,
+         {&Family::key_low, &Family::key_high, &Family::blocked, &Family::haze});
+}
+
+/// Draws the scene once for each axis or, in a single pass, for all. Buffers are bound role by role, families within.
+void SlicedVoxelization::raster(const gl::SceneBuffers& scene, const gl::Program& program, int first_axis,
+                                int last_axis, std::initializer_list<gl::Buffer Family::*> buffers) {
+  voxels_.grid_block.bind_uniform(0);
+  program.set("triangle_bits", std::max(8, int(std::bit_width(scene.triangle_count()))));
+  const int at_once = method_ == VoxelizationMethod::single_pass ? 3 : 1;
+  for (int axis = first_axis; axis <= last_axis; axis += at_once) {
+    GLuint binding = 0;
+    for (const auto buffer : buffers) {
+      for (int family = axis; family < axis + at_once; ++family, ++binding) {
+        const gl::Buffer& b = families_[size_t(family)].*buffer;
+        if (b.bytes() > 0) b.bind_storage(binding);
+      }
+    }
+    program.set("axis", axis);
+    gl::begin_fullscreen_pass();  // no depth test: all fragments count
+    columns_.bind();
+    scene.draw(program);
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void SlicedVoxelization::make_room_for_surfaces(int axis) {
+  Family& f = families_[size_t(axis)];
+  if (f.capacity == 0) {  // the first run counts, and waits
+    number_surfaces(axis);
+    wanted_buffer_.download(wanted_.data(), sizeof(Wanted));
+  } else if (wanted_[size_t(axis)] <= f.capacity) {
+    return;
+  }
+  f.capacity = with_headroom(wanted_[size_t(axis)]);
+  f.surfaces = gl::Buffer(kSurfaceBytes * size_t(f.capacity));
+}
+
+void SlicedVoxelization::number_surfaces(int axis) {
+  Family& f = families_[size_t(axis)];
+  glClearNamedBufferSubData(wanted_buffer_.id(), GL_R32UI, GLintptr(sizeof(std::uint32_t)) * axis,
+                            sizeof(std::uint32_t), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  f.key_low.bind_storage(0);
+  f.entries.bind_storage(1);
+  wanted_buffer_.bind_storage(2);
+  number_.use();
+  number_.set("axis", axis);
+  number_.set("capacity", GLuint(f.capacity));
+  dispatch_linear(faces(voxels_.grid, axis), 256);
+}
+
+void SlicedVoxelization::write_surfaces(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
+  write_.set("footprint", kFootprintAlbedo);
+  raster(scene, write_, first_axis, last_axis,
+         {&Family::key_low, &Family::key_high, &Family::entries, &Family::surfaces});
+}
+
+void SlicedVoxelization::find_coverage() {
+  voxels_.grid_block.bind_uniform(0);
+  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].blocked.bind_storage(axis);
+  coverage_.use();
+  coverage_.set("has_haze", int(alpha_));
+  for (int axis = 0; axis < 3; ++axis) {
+    const Family& f = families_[size_t(axis)];
+    (alpha_ ? f.haze : f.key_low).bind_storage(3);
+    f.key_low.bind_storage(4);
+    f.coverage.bind_storage(5);
+    coverage_.set("axis", axis);
+    dispatch_linear(faces(voxels_.grid, axis), kGroup);
+  }
+}
+
+void SlicedVoxelization::list_sides() {
+  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].coverage.bind_storage(axis);
+  voxels_.cell_sides.bind_storage(3);
+  group_totals_.bind_storage(4);
+  count_.use();
+  dispatch_linear(cell_count(voxels_.grid), kGroup);
+  wanted_buffer_.bind_storage(2);
+  scan_.use();
+  scan_.set("groups", groups_);
+  dispatch_linear(1, 1);
+  make_room_for_sides();
+  voxels_.side_count.bind_storage(5);
+  offset_.use();
+  offset_.set("capacity", GLuint(voxels_.side_capacity));
+  dispatch_linear(cell_count(voxels_.grid), kGroup);
+}
+
+void SlicedVoxelization::make_room_for_sides() {
+  if (voxels_.side_capacity == 0) {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    wanted_buffer_.download(wanted_.data(), sizeof(Wanted));
+  } else if (wanted_[3] <= voxels_.side_capacity) {
+    return;
+  }
+  voxels_.side_capacity = with_headroom(wanted_[3]);
   voxels_.sides = gl::Buffer(sizeof(shared::Side) * size_t(voxels_.side_capacity));
   area_fixed_ = gl::Buffer(sizeof(std::uint32_t) * size_t(voxels_.side_capacity));
 }
 
-void SlicedVoxelization::slice(const gl::SceneBuffers& scene, bool write_sides) {
+void SlicedVoxelization::fill_sides() {
   voxels_.bind();
-  slice_.use();
-  slice_.set("write_sides", int(write_sides));
-  slice_.set("triangle_bits", std::max(8, int(std::bit_width(scene.triangle_count()))));
+  fill_.use();
   for (int axis = 0; axis < 3; ++axis) {
-    slice_.set("axis", axis);
-    key_low_[axis].bind_storage(0);
-    key_high_[axis].bind_storage(1);
-    opacity_[axis].bind_storage(2);
-    gl::begin_fullscreen_pass();  // no depth test: all fragments count
-    columns_[axis].bind();
-    scene.draw(slice_);
+    const Family& f = families_[size_t(axis)];
+    f.entries.bind_storage(0);
+    f.surfaces.bind_storage(1);
+    f.coverage.bind_storage(2);
+    fill_.set("axis", axis);
+    dispatch_linear(faces(voxels_.grid, axis), kGroup);
   }
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 void SlicedVoxelization::count_area(const gl::SceneBuffers& scene) {
   area_fixed_.clear();
   voxels_.bind();
   area_fixed_.bind_storage(0);
-  side_area_.use();
-  side_area_.set("samples_per_cell", float(kAreaSamples));
-  for (int axis = 0; axis < 3; ++axis) {
-    side_area_.set("axis", axis);
-    gl::begin_fullscreen_pass();
-    fine_columns_[axis].bind();
-    scene.draw(side_area_);
-  }
+  auto& program = side_area_[size_t(alpha_)];
+  if (!program) program = gl::Program::raster("voxel/side_area", alpha_define(alpha_));
+  program->set("footprint", kFootprintAlpha);
+  gl::begin_fullscreen_pass();
+  columns_.bind();
+  scene.draw(*program);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   collect_area_.use();
-  gl::dispatch({int(voxels_.side_capacity), 1, 1}, {64, 1, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-}
-
-void SlicedVoxelization::list_sides() {
-  voxels_.bind();
-  for (GLuint axis = 0; axis < 3; ++axis) opacity_[axis].bind_storage(axis);
-  group_totals_.bind_storage(4);
-  count_.use();
-  glDispatchCompute(GLuint(groups_), 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  scan_.use();
-  scan_.set("groups", groups_);
-  glDispatchCompute(1, 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  offset_.use();
-  glDispatchCompute(GLuint(groups_), 1, 1);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  dispatch_linear(voxels_.side_capacity, 64);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 size_t SlicedVoxelization::bytes() const {
-  size_t sum = voxels_.bytes() + group_totals_.bytes() + area_fixed_.bytes();
-  for (int axis = 0; axis < 3; ++axis) sum += key_low_[axis].bytes() + key_high_[axis].bytes() + opacity_[axis].bytes();
+  size_t sum = voxels_.bytes() + wanted_buffer_.bytes() + group_totals_.bytes() + area_fixed_.bytes();
+  for (const Family& f : families_) {
+    for (const gl::Buffer* b : {&f.key_low, &f.key_high, &f.blocked, &f.haze, &f.entries, &f.surfaces, &f.coverage}) {
+      sum += b->bytes();
+    }
+  }
   return sum;
+}
+
+size_t voxelization_bytes(const Grid& grid, const Scene& scene) {
+  double staircases = 0.0;  // m^2, of one face of each surface: s times its area
+  for (const Mesh& mesh : scene.meshes) {
+    for (glm::uvec3 t : mesh.triangles) {
+      const glm::vec3 p = mesh.positions[t.x];
+      const glm::vec3 twice_area = glm::cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p);
+      staircases += 0.5 * double(shared::staircase_factor(twice_area));
+    }
+  }
+  const bool alpha = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                 [](const Material& m) { return m.alpha_mode != AlphaMode::opaque; });
+  size_t sum = 8 * cell_count(grid) + sizeof(std::uint32_t) * (cell_count(grid) / kGroup + 1) + sizeof(Grid);
+  for (int axis = 0; axis < 3; ++axis) sum += (alpha ? 6 : 5) * sizeof(std::uint32_t) * faces(grid, axis);
+  const double h = double(grid.cell_size_m);
+  const auto crossed = std::uint32_t(std::min(staircases / (h * h), 3.0 * double(cell_count(grid))));
+  const size_t sides = with_headroom(2 * crossed);
+  return sum + with_headroom(crossed) * kSurfaceBytes + sides * (sizeof(shared::Side) + sizeof(std::uint32_t));
 }
 
 }  // namespace volgi

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <openvdb/io/Archive.h>
-#include <openvdb/io/Stream.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/io/io.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <new>
 
 #include "core/atomic_file.h"
@@ -22,10 +23,9 @@ namespace fs = std::filesystem;
 // Header of a file: magic number (8 bytes), file format and library version (3 x 4), whether grids have offsets (1),
 // UUID in ASCII.
 constexpr std::uint64_t kMagic = 0x56444220;  // OPENVDB_MAGIC
-constexpr std::streamoff kOffsetFlagAt = 20;
 constexpr std::streamoff kUuidAt = 21;
 constexpr std::streamoff kUuidLength = 36;
-// First format whose header is as above; OpenVDB reads older ones too.
+// First format whose grids say their own compression (2013).
 constexpr std::uint32_t kOldestKnownFormat = 222;
 
 /// io::File without its stream, whose errors it does not look at.
@@ -34,72 +34,138 @@ class SeekableArchive : public openvdb::io::Archive {
   using Archive::write;
 };
 
-/// FNV-1a, 128 bits (Fowler, Noll, Vo), as a UUID of version 8, "custom" (RFC 9562, section 5.8).
-class ContentUuid {
+/// FNV-1a, 128 bits (Fowler, Noll, Vo).
+class Hash {
  public:
   void add(const char* data, size_t size) {
-    for (size_t i = 0; i < size; ++i) hash_ = (hash_ ^ static_cast<unsigned char>(data[i])) * kPrime;
+    for (size_t i = 0; i < size; ++i) value_ = (value_ ^ static_cast<unsigned char>(data[i])) * kPrime;
   }
-  std::string text() const {
-    const auto high = std::uint64_t(hash_ >> 64), low = std::uint64_t(hash_);
-    const std::uint64_t version = (high & ~0xf000ull) | 0x8000ull;
-    const std::uint64_t variant = (low & ~(3ull << 62)) | (2ull << 62);
-    return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", version >> 32, (version >> 16) & 0xffff, version & 0xffff,
-                       variant >> 48, variant & 0xffffffffffffull);
-  }
+  std::uint64_t high() const { return std::uint64_t(value_ >> 64); }
+  std::uint64_t low() const { return std::uint64_t(value_); }
 
  private:
   using Wide = unsigned __int128;
   static constexpr Wide kPrime = (Wide(1) << 88) + 0x13b;
-  Wide hash_ = (Wide(0x6c62272e07bb0142ull) << 64) | 0x62b821756295c58dull;
+  Wide value_ = (Wide(0x6c62272e07bb0142ull) << 64) | 0x62b821756295c58dull;
 };
+
+/// "volg" in ASCII: which files have a UUID that can be checked.
+constexpr const char* kUuidStart = "766f6c67-";
+
+/// The hash of all bytes but the UUID's own as a UUID of version 8, "custom" (RFC 9562, section 5.8): 90 bits of it.
+std::string content_uuid(std::istream& stream, std::uint64_t size) {
+  Hash hash;
+  std::vector<char> block(1 << 20);
+  const auto add = [&](std::uint64_t from, std::uint64_t to) {
+    stream.seekg(std::streamoff(from));
+    for (std::uint64_t next = 0; from < to; from += next) {
+      next = std::min<std::uint64_t>(block.size(), to - from);
+      stream.read(block.data(), std::streamsize(next));
+      hash.add(block.data(), size_t(next));
+    }
+  };
+  add(0, kUuidAt);
+  add(kUuidAt + kUuidLength, size);
+  const std::uint64_t high = hash.high(), low = hash.low();
+  return fmt::format("{}{:04x}-8{:03x}-{:04x}-{:012x}", kUuidStart, high & 0xffff, (high >> 16) & 0xfff,
+                     0x8000 | ((low >> 48) & 0x3fff), low & 0xffffffffffffull);
+}
 
 void write_content_uuid(const fs::path& path) {
   std::fstream stream;
   stream.exceptions(std::ios::badbit | std::ios::failbit);
   stream.open(path, std::ios::in | std::ios::out | std::ios::binary);
-  stream.seekg(kUuidAt + kUuidLength);
-  ContentUuid uuid;
-  std::vector<char> block(1 << 20);
-  stream.exceptions(std::ios::badbit);
-  while (stream.read(block.data(), std::streamsize(block.size())) || stream.gcount() > 0)
-    uuid.add(block.data(), size_t(stream.gcount()));
-  stream.clear();
-  stream.exceptions(std::ios::badbit | std::ios::failbit);
+  const std::string uuid = content_uuid(stream, fs::file_size(path));
   stream.seekp(kUuidAt);
-  stream.write(uuid.text().data(), kUuidLength);
+  stream.write(uuid.data(), kUuidLength);
   stream.close();
 }
 
-/// OpenVDB makes strings as long as the file says before it reads them. This follows the lengths in the header, the
-/// directory and the grids' metadata first, so that none goes beyond the end of the file.
-class LengthCheck {
- public:
-  explicit LengthCheck(std::istream& stream, std::uint64_t size) : stream_(stream), size_(size) {}
+/// OpenVDB's decoders (10.0) write beyond their buffers when a block's length is wrong, so what can be checked is
+/// checked before they see it: our own files as a whole.
+void check_content(std::istream& stream, std::uint64_t size) {
+  std::string uuid(size_t(kUuidLength), '\0');
+  stream.seekg(kUuidAt);
+  stream.read(uuid.data(), kUuidLength);
+  if (uuid.starts_with(kUuidStart) && uuid != content_uuid(stream, size))
+    throw std::runtime_error("it has changed since volgi wrote it");
+}
 
-  void run() {
-    if (get<std::uint64_t>() != kMagic) throw std::runtime_error("it does not start as an OpenVDB file does");
-    if (get<std::uint32_t>() < kOldestKnownFormat) return;
-    stream_.seekg(kOffsetFlagAt);
-    const bool has_offsets = get<char>() != 0;
-    stream_.seekg(kUuidAt + kUuidLength);
-    metadata();
-    const auto grids = get<std::int32_t>();
-    for (std::int32_t i = 0; i < grids; ++i) {
-      for (int text = 0; text < 3; ++text) skip_text();  // name, type, name of the grid whose tree it shares
-      const auto offsets = get<std::array<std::int64_t, 3>>();
-      if (has_offsets && offsets[0] != position()) throw std::runtime_error("a grid is not where the file says");
-      get<std::uint32_t>();  // compression
-      metadata();
-      skip_text();  // kind of transform
-      if (!has_offsets) return;
-      if (offsets[2] < position() || std::uint64_t(offsets[2]) > size_)
-        throw std::runtime_error("a grid ends after the file");
-      stream_.seekg(offsets[2]);
+/// io::Stream that trusts no length and no place in a file. OpenVDB makes strings as long as the file says before it
+/// reads them, and does not ask whether a read succeeded: here every length is held against the size of the file first,
+/// and the stream throws.
+class Reader : public openvdb::io::Archive {
+ public:
+  Reader(std::istream& stream, std::uint64_t size) : stream_(stream), size_(size) {}
+  ~Reader() override { openvdb::io::clearStreamMetadataPtr(stream_); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  VdbFile read() {
+    read_header();
+    VdbFile file;
+    check([&] { check_metadata(); });
+    file.metadata.readMeta(stream_);
+    NamedGridMap named;
+    std::vector<openvdb::io::GridDescriptor> descriptors;
+    for (std::int32_t left = readGridCount(stream_); left > 0; --left) {
+      descriptors.emplace_back();
+      file.grids.push_back(read_grid(descriptors.back()));
+      named[descriptors.back().uniqueName()] = file.grids.back();
     }
+    for (const auto& descriptor : descriptors) connectInstance(descriptor, named);
+    return file;
   }
 
  private:
+  void read_header() {
+    check([&] {
+      if (get<std::uint64_t>() != kMagic) throw std::runtime_error("it does not start as an OpenVDB file does");
+      const auto format = get<std::uint32_t>();
+      if (format < kOldestKnownFormat || format > openvdb::OPENVDB_FILE_VERSION)
+        throw std::runtime_error(fmt::format("its format is {}, formats {} to {} can be read", format,
+                                             kOldestKnownFormat, std::uint32_t(openvdb::OPENVDB_FILE_VERSION)));
+    });
+    readHeader(stream_);
+    openvdb::io::setStreamMetadataPtr(stream_, state_, false);
+    openvdb::io::setVersion(stream_, libraryVersion(), fileVersion());
+    openvdb::io::setDataCompression(stream_, compression());
+  }
+
+  openvdb::GridBase::Ptr read_grid(openvdb::io::GridDescriptor& descriptor) {
+    check([&] {
+      for (int text = 0; text < 3; ++text) skip_text();  // name, type, name of the grid whose tree it shares
+    });
+    openvdb::GridBase::Ptr grid = descriptor.read(stream_);
+    if (inputHasGridOffsets() && descriptor.getGridPos() != position())
+      throw std::runtime_error("a grid is not where its directory says");
+    check([&] {
+      get<std::uint32_t>();  // compression
+      check_metadata();
+      skip_text();  // kind of transform
+    });
+    readGrid(grid, descriptor, stream_);
+    if (inputHasGridOffsets() && descriptor.getEndPos() != position())
+      throw std::runtime_error("a grid does not end where its directory says");
+    return grid;
+  }
+
+  /// Looks ahead: the stream is where it was afterwards.
+  template <typename Look>
+  void check(Look look) {
+    const auto start = stream_.tellg();
+    look();
+    stream_.seekg(start);
+  }
+  void check_metadata() {
+    for (auto left = get<std::uint32_t>(); left > 0; --left)
+      for (int text = 0; text < 3; ++text) skip_text();  // name, type, value
+  }
+  void skip_text() {
+    const auto length = get<std::uint32_t>();
+    if (length > size_ - std::uint64_t(position())) throw std::runtime_error("a text in it is longer than the file");
+    stream_.seekg(length, std::ios::cur);
+  }
   template <typename Value>
   Value get() {
     Value value;
@@ -107,18 +173,11 @@ class LengthCheck {
     return value;
   }
   std::int64_t position() { return std::int64_t(stream_.tellg()); }
-  void skip_text() {
-    const auto length = get<std::uint32_t>();
-    if (length > size_ - std::uint64_t(position())) throw std::runtime_error("a text is longer than the file");
-    stream_.seekg(length, std::ios::cur);
-  }
-  void metadata() {
-    for (auto left = get<std::uint32_t>(); left > 0; --left)
-      for (int text = 0; text < 3; ++text) skip_text();  // name, type, value
-  }
 
   std::istream& stream_;
   std::uint64_t size_;
+  // The stream keeps the address of this pointer.
+  openvdb::SharedPtr<openvdb::io::StreamMetadata> state_ = std::make_shared<openvdb::io::StreamMetadata>();
 };
 
 std::string one_line(std::string text) {
@@ -150,7 +209,7 @@ void write_vdb(const fs::path& path, const openvdb::GridCPtrVec& grids, const op
       stream.exceptions(std::ios::badbit | std::ios::failbit);
       stream.open(temporary, std::ios::binary);
       SeekableArchive archive;
-      archive.setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK);
+      archive.setCompression(openvdb::io::Archive::DEFAULT_COMPRESSION_FLAGS);
       archive.write(stream, grids, true, file_metadata);
       stream.close();
       write_content_uuid(temporary);
@@ -170,22 +229,17 @@ VdbFile read_vdb(const fs::path& path) {
   if (error) fail(ExitCode::bad_input, path, "cannot read it: " + error.message());
   try {
     std::ifstream stream;
-    // OpenVDB does not ask whether a read succeeded: with these on, none can fail unseen.
     stream.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
     stream.open(path, std::ios::binary);
-    LengthCheck(stream, size).run();
+    check_content(stream, size);
     stream.seekg(0);
-    openvdb::io::Stream archive(stream, false);
-    VdbFile file;
-    file.grids = *archive.getGrids();
-    file.metadata = *archive.getMetadata();
-    return file;
+    return Reader(stream, size).read();
   } catch (const std::bad_alloc&) {
     fail(ExitCode::over_limit, path, "not enough memory to read it");
   } catch (const std::ios_base::failure&) {
     fail(ExitCode::bad_input, path, "not a complete OpenVDB file: it ends too early or cannot be read");
   } catch (const std::exception& e) {
-    fail(ExitCode::bad_input, path, fmt::format("not a sound OpenVDB file: {}", e.what()));
+    fail(ExitCode::bad_input, path, fmt::format("damaged, or not an OpenVDB file: {}", e.what()));
   }
 }
 

@@ -29,16 +29,17 @@ inline constexpr const char* kDescriptionKey = "description";
 void label_grid(openvdb::GridBase& grid, const GridLabel& label);
 
 /// Writes grids, with the transforms and metadata that they have, atomically. The same grids give the same bytes: the
-/// UUID that OpenVDB draws at random is replaced by a hash of what follows it.
-/// Zip and active-mask compression: Blender, Houdini and every build of OpenVDB read it, its blocks carry a checksum,
-/// and its decoder stays within its buffers on damaged data (Blosc's does not); Blosc is faster.
+/// UUID that OpenVDB draws at random is replaced by a hash of all the rest, which read_vdb checks.
+/// OpenVDB's default compression, which Blender and Houdini read and write: Blosc of active cells (zip in a build
+/// without Blosc). Against zip, on the fluence of a 128^3 box: 0.1 s instead of 1.1 s, 19.3 MB instead of 22.2 MB.
 /// @throws Error(cannot_write) naming the path, also when the disk is full.
 void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
                const openvdb::MetaMap& file_metadata);
 
-/// Reads all grids into memory.
-/// @throws Error(bad_input) naming the path when it is missing, no OpenVDB file, cut short or damaged;
-///   Error(over_limit) when memory runs out.
+/// Reads all grids into memory. Of files that others wrote, lengths and places are checked, but OpenVDB 10 can overrun
+/// its buffers on blocks that were made to do so: no such files from strangers.
+/// @throws Error(bad_input) naming the path when it is missing, no OpenVDB file, cut short or, as far as can be known,
+///   damaged; Error(over_limit) when memory runs out.
 VdbFile read_vdb(const std::filesystem::path& path);
 
 }  // namespace volgi

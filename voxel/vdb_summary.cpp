@@ -73,11 +73,11 @@ GridSummary summarise(const openvdb::GridBase& grid) {
   return s;
 }
 
-std::vector<std::pair<std::string, std::string>> metadata_texts(const openvdb::MetaMap& metadata) {
-  std::vector<std::pair<std::string, std::string>> texts;
+std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further_metadata(const openvdb::MetaMap& metadata) {
+  std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further;
   for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it)
-    if (it->second && !is_said_elsewhere(it->first)) texts.emplace_back(it->first, it->second->str());
-  return texts;
+    if (it->second && !is_said_elsewhere(it->first)) further.emplace_back(it->first, it->second);
+  return further;
 }
 
 }  // namespace volgi

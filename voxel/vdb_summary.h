@@ -50,7 +50,7 @@ struct GridSummary {
 /// Cost: one pass over the active values, in the order of the tree, so that means do not depend on threads.
 GridSummary summarise(const openvdb::GridBase& grid);
 
-/// Metadata as (key, value) texts in the order of the keys; for a grid, without what summarise() says already.
-std::vector<std::pair<std::string, std::string>> metadata_texts(const openvdb::MetaMap& metadata);
+/// Metadata in the order of the keys; of a grid, without what summarise() says and OpenVDB's own statistics.
+std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further_metadata(const openvdb::MetaMap& metadata);
 
 }  // namespace volgi

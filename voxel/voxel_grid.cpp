@@ -31,10 +31,28 @@ VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides)
     leaf->setValueOn(openvdb::Index(leaf_offset(cell)), pack({std::uint32_t(first), face_bits(sides_, first, last)}));
   }
   leaves_.assign(writable.begin(), writable.end());
+  point_to_cells();
+}
+
+VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves)
+    : grid_(grid),
+      blocks_(leaf_blocks(grid)),
+      sides_(std::move(sides)),
+      tree_(std::make_shared<CellSidesTree>(0)),
+      leaves_(leaves.begin(), leaves.end()) {
+  for (Leaf* leaf : leaves) {
+    if (leaf != nullptr) tree_->addLeaf(leaf);
+  }
+  point_to_cells();
+}
+
+void VoxelGrid::point_to_cells() {
+  leaf_cells_.reserve(leaves_.size());
+  for (const Leaf* leaf : leaves_) leaf_cells_.push_back(leaf == nullptr ? nullptr : leaf->buffer().data());
 }
 
 size_t VoxelGrid::bytes() const {
-  return tree_->memUsage() + sides_.size() * sizeof(shared::Side) + leaves_.size() * sizeof(const Leaf*);
+  return tree_->memUsage() + sides_.size() * sizeof(shared::Side) + 2 * leaves_.size() * sizeof(const Leaf*);
 }
 
 }  // namespace volgi

@@ -11,7 +11,8 @@
 namespace volgi {
 
 /// Blocks of 8^3 cells, the leaves of OpenVDB's trees; a cell's place in its leaf is z fastest, as OpenVDB has it.
-constexpr int kLeafCells = 8;
+constexpr int kLeafShift = 3;
+constexpr int kLeafCells = 1 << kLeafShift;
 inline glm::ivec3 leaf_blocks(const Grid& grid) { return (grid.cells + (kLeafCells - 1)) / kLeafCells; }
 inline int block_index(glm::ivec3 blocks, glm::ivec3 block) {  // x fastest, as cells
   return block.x + blocks.x * (block.y + blocks.y * block.z);
@@ -33,9 +34,12 @@ class VoxelGrid {
   /// @param sides  those of one cell beside each other, in the order of faces. Faces stop everything where coverage
   ///               is 1.
   VoxelGrid(const Grid& grid, std::vector<shared::Side> sides);
+  /// The same where whoever made the sides has the leaves, one for each block with sides, null elsewhere; takes them.
+  VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves);
 
   const Grid& grid() const { return grid_; }
   const std::vector<shared::Side>& sides() const { return sides_; }
+  std::vector<shared::Side>& mutable_sides() { return sides_; }  // what does not change which faces have sides
   size_t side_count() const { return sides_.size(); }
   const CellSidesTree& cell_sides_tree() const { return *tree_; }
 
@@ -44,8 +48,8 @@ class VoxelGrid {
   glm::ivec3 blocks() const { return blocks_; }
   /// (0, 0) for a cell without sides. The cell must lie inside the grid.
   glm::uvec2 cell_sides(glm::ivec3 cell) const {
-    const Leaf* l = leaf(cell / kLeafCells);
-    return l == nullptr ? glm::uvec2(0) : unpack(l->buffer().data()[leaf_offset(cell)]);
+    const std::int64_t* l = leaf_cells_[size_t(block_index(blocks_, cell >> kLeafShift))];
+    return l == nullptr ? glm::uvec2(0) : unpack(l[leaf_offset(cell)]);
   }
   static glm::uvec2 unpack(std::int64_t v) { return {std::uint32_t(v), std::uint32_t(std::uint64_t(v) >> 32)}; }
   static std::int64_t pack(glm::uvec2 v) { return std::int64_t(std::uint64_t(v.x) | (std::uint64_t(v.y) << 32)); }
@@ -53,11 +57,14 @@ class VoxelGrid {
   size_t bytes() const;
 
  private:
+  void point_to_cells();
+
   Grid grid_{};
   glm::ivec3 blocks_{0};
   std::vector<shared::Side> sides_;
   CellSidesTree::Ptr tree_;
-  std::vector<const Leaf*> leaves_;  // by block
+  std::vector<const Leaf*> leaves_;              // by block
+  std::vector<const std::int64_t*> leaf_cells_;  // their buffers, without OpenVDB's question whether they are in memory
 };
 
 }  // namespace volgi

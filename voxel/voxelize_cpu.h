@@ -14,4 +14,12 @@ VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid);
 /// Occupancy, albedo, normal and emission per cell, from the same fragments.
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid);
 
+struct Voxelized {
+  VoxelGrid voxels;
+  CellVolumes cells;
+};
+
+/// Both, with the triangles placed and binned once.
+Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid);
+
 }  // namespace volgi

@@ -25,7 +25,10 @@ int main(int argc, char** argv) {
 #endif
   app::add_reference_command(app, exit_code);
   app::add_compare_command(app, exit_code);
+  app::add_export_command(app, exit_code);
+  app::add_inspect_command(app, exit_code);
 #ifdef VOLGI_HAS_GL
+  app::add_crosscheck_command(app, exit_code);
   app::add_bench_command(app, exit_code);
 #endif
   try {

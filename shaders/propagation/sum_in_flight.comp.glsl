@@ -1,8 +1,10 @@
 #version 450 core
 // Power still in flight in the volume, per band: 64 partial sums by 64 groups (sum_partials adds them). A stored lobe's
-// clamped face powers sum to the power that it carries.
+// clamped face powers sum to the power that it carries; the first number of a pulse's lobe (papers' schemes) is its power.
+// Set by the program: ORDER = 2
+// Set by the program: PULSE = 0
 #include "shared/grid.shared.h"
-#include "shared/sh.shared.h"
+#include "propagation/crossing.glsl"
 
 layout(local_size_x = 256) in;
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
@@ -11,21 +13,17 @@ layout(std430, binding = 10) writeonly buffer Partials { vec4 partials[]; };
 
 shared vec4 running[256];
 
-float carried(vec4 lobe) {
-  float power = 0.0;
-  for (int face = 0; face < 6; ++face) power += max(pyramid_power(lobe, face), 0.0);
-  return power;
-}
-
 void main() {
   uint lane = gl_LocalInvocationID.x;
   int cells = grid.cells.x * grid.cells.y * grid.cells.z;
   vec4 sum = vec4(0.0);
   for (int i = int(gl_GlobalInvocationID.x); i < cells; i += 64 * 256) {
-    ivec3 c = cell_coord(grid, i);
-    sum.r += carried(texelFetch(lobes, c, 0));
-    sum.g += carried(texelFetch(lobes, c + ivec3(0, 0, grid.cells.z), 0));
-    sum.b += carried(texelFetch(lobes, c + ivec3(0, 0, 2 * grid.cells.z), 0));
+    Lobes own = load_lobes(lobes, cell_coord(grid, i), grid.cells.z);
+#if PULSE
+    sum.rgb += lobe_powers(own);
+#else
+    for (int face = 0; face < 6; ++face) sum.rgb += hit_power(own, face);
+#endif
   }
   running[lane] = sum;
   barrier();

@@ -1,74 +1,214 @@
 #version 450 core
-// One transport order of the `ordinates` scheme: discrete ordinates, step scheme (docs/theory.md#ordinates). The flow of the
-// directions of one octant is ordered, so one sweep over the cells, upwind cells first, solves void, blocked and partly
-// transmitting faces to rounding. A dispatch takes one diagonal plane i+j+k of all eight octants: its cells do not depend on
-// each other, and only the plane before is kept.
-// Set by the program: PER_OCTANT = 3
+// One transport order of the `ordinates` scheme: discrete ordinates (docs/theory.md#ordinates). The flow of the directions
+// of one octant is ordered, so one sweep over the cells, upwind cells first, solves void, blocked and partly transmitting
+// faces to rounding. A dispatch takes one diagonal i+j+k of all eight octants: its cells do not depend on each other, and
+// only the diagonal before is kept. With RADIANCE the octants follow one another and each adds to the cells' radiance.
+//
+// Powers are packed: value 3 d + band of the octant's direction d, four values a texel, so texel k begins with band k % 3.
+// Step keeps a cell's power of each direction; characteristic (SC1) what leaves through each of its three downwind faces.
+// Set by the program: TEXELS = 3
+// Set by the program: CHARACTERISTIC = 1
+// Set by the program: RADIANCE = 0
 #include "shared/grid.shared.h"
-#include "shared/side.shared.h"
+#include "propagation/side_texel.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 7) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
-// Four entries a side, one for each octant that can reach it; the entry's number is the octant's on the two other axes.
-layout(std430, binding = 10) writeonly buffer Arrived { vec4 arrived[]; };
-// The plane before and this one: column (i,j) of its cells, a layer for every octant and direction.
-layout(binding = 0) uniform sampler2DArray before_plane;
+// By texel; a is an upwind, b a downwind face's axis.
+layout(std140, binding = 1) uniform SharesBlock {
+  vec4 emitted_share[3 * TEXELS];  // of what a side on face a sends (OrdinateSet::emitted_share): 3 k + a
+  // Step: of a cell's power through face b: 3 k + b. Characteristic: of what came in through face a: 9 k + 3 a + b.
+  vec4 downwind_share[(CHARACTERISTIC != 0 ? 9 : 3) * TEXELS];
+  vec4 radiance_weight[3 * TEXELS];  // radiance_per_watt of what comes in through face a: 3 k + a
+  vec4 direction[3 * TEXELS];        // its component on axis a: 3 k + a
+};
+layout(binding = 0) uniform sampler2DArray before_plane;  // column (i,j); layers by octant, texel, downwind face
+layout(binding = 1) uniform usampler3D cell_word;         // (first side << 6) | faces (prepare_sweep)
+layout(binding = 2) uniform sampler2D side_light;         // rgb sent [W], a: 1 - tau
+layout(binding = 3) uniform usampler2D column_map;        // of all diagonals' cells: i + (j << 16)
 layout(binding = 0, rgba32f) uniform restrict writeonly image2DArray this_plane;
-uniform vec3 emitted_share[PER_OCTANT];   // of a side's power on each axis: w |d| / t (ordinates.h)
-uniform vec3 downwind_share[PER_OCTANT];  // of a cell's power through each downwind face: |d| / (|d_x| + |d_y| + |d_z|)
-uniform int plane;
-uniform ivec2 first_column;
+#if RADIANCE
+layout(binding = 1, rgba32f) uniform restrict image3D radiance_sh;  // four coefficients stacked in z
+#else
+// Four entries a side, one for each octant that can reach it; the entry's number is the octant's on the two other axes.
+layout(binding = 1, rgba32f) uniform restrict writeonly image2D arrived;
+#endif
+uniform int diagonal;
+uniform int first_cell;  // of the diagonal, in column_map
+uniform int cell_count;
+uniform int first_octant;
+
+const int FACES = CHARACTERISTIC != 0 ? 3 : 1;
+
+struct Light {
+  bool at_sides;  // the cell has sides: the next two count
+  vec3 sent[3];   // by the sides on the upwind faces [W]
+  vec3 leaves[3];  // through the downwind faces [W]
+  vec3 pass;      // share that comes through each upwind face
+  vec3 sh[4];     // RADIANCE: of the octant's light, in the octant's own axes
+};
+
+struct From {  // columns that light comes from
+  ivec2 x, y, z;
+  int layer;
+};
+
+vec4 packed_bands(vec3 rgb, int first) { return first == 0 ? rgb.rgbr : first == 1 ? rgb.gbrg : rgb.brgb; }
+vec3 summed_bands(vec4 t, int first) {
+  vec3 sum = vec3(t.x + t.w, t.yz);
+  return first == 0 ? sum.xyz : first == 1 ? sum.zxy : sum.yzx;
+}
 
 int entry_of_octant(int octant, int axis) {
   return axis == 0 ? octant >> 1 : axis == 1 ? (octant & 1) | ((octant >> 1) & 2) : octant & 3;
 }
+int side_of(uint word, int face) { return int(word >> 6) + bitCount(word & ((1u << face) - 1u)); }
+bool word_has_side(uint word, int face) { return ((word >> face) & 1u) != 0u; }
 
-// Adds what enters the cell through its upwind face of `axis`: the neighbour's light, and what a side there sends.
-void enter(inout vec3 power[PER_OCTANT], uvec2 own_sides, int axis, int face, bool neighbour, ivec2 column, int first_layer) {
-  float pass = neighbour ? 1.0 : 0.0;
-  if (has_side(own_sides, face)) {
-    uint side = side_index(own_sides, face);
-    pass *= is_opaque(own_sides, face) ? 0.0 : 1.0 - sides[side].coverage;
-    vec3 e = sent[side].rgb;
-    for (int d = 0; d < PER_OCTANT; ++d) power[d] += emitted_share[d][axis] * e;
+// The upwind face of `axis`: what a side there sends, and what it lets through.
+void enter(uint word, int axis, int face, inout Light light) {
+  vec4 side = texelFetch(side_light, side_texel(side_of(word, face)), 0);
+  light.sent[axis] = word_has_side(word, face) ? side.rgb : vec3(0.0);
+  if (word_has_side(word, face)) light.pass[axis] *= side.a;
+}
+
+void add_radiance(int k, int band, vec4 in_x, vec4 in_y, vec4 in_z, inout Light light) {
+  vec4 q = radiance_weight[3 * k] * in_x + radiance_weight[3 * k + 1] * in_y + radiance_weight[3 * k + 2] * in_z;
+  light.sh[0] += summed_bands(q, band);
+  light.sh[1] += summed_bands(q * direction[3 * k + 1], band);
+  light.sh[2] += summed_bands(q * direction[3 * k + 2], band);
+  light.sh[3] += summed_bands(q * direction[3 * k], band);
+}
+
+// Texel k of the cell, which begins with `band`. Indices are literal wherever this is called: a driver may gather a
+// uniform by computed index lane by lane (llvmpipe: 2.5 times the whole sweep's time).
+void carry_texel(int k, int band, From from, inout Light light) {
+  int layer = from.layer + k * FACES;
+#if CHARACTERISTIC
+  vec4 in_x = light.pass.x * texelFetch(before_plane, ivec3(from.x, layer), 0);
+  vec4 in_y = light.pass.y * texelFetch(before_plane, ivec3(from.y, layer + 1), 0);
+  vec4 in_z = light.pass.z * texelFetch(before_plane, ivec3(from.z, layer + 2), 0);
+#else
+  vec4 in_x = light.pass.x * downwind_share[3 * k] * texelFetch(before_plane, ivec3(from.x, layer), 0);
+  vec4 in_y = light.pass.y * downwind_share[3 * k + 1] * texelFetch(before_plane, ivec3(from.y, layer), 0);
+  vec4 in_z = light.pass.z * downwind_share[3 * k + 2] * texelFetch(before_plane, ivec3(from.z, layer), 0);
+#endif
+  if (light.at_sides) {
+    in_x += emitted_share[3 * k] * packed_bands(light.sent[0], band);
+    in_y += emitted_share[3 * k + 1] * packed_bands(light.sent[1], band);
+    in_z += emitted_share[3 * k + 2] * packed_bands(light.sent[2], band);
   }
-  if (pass == 0.0) return;
-  for (int d = 0; d < PER_OCTANT; ++d) {
-    power[d] += pass * downwind_share[d][axis] * texelFetch(before_plane, ivec3(column, first_layer + d), 0).rgb;
+#if RADIANCE
+  add_radiance(k, band, in_x, in_y, in_z, light);
+#endif
+#if CHARACTERISTIC
+  vec4 out_x = downwind_share[9 * k] * in_x + downwind_share[9 * k + 3] * in_y + downwind_share[9 * k + 6] * in_z;
+  vec4 out_y = downwind_share[9 * k + 1] * in_x + downwind_share[9 * k + 4] * in_y + downwind_share[9 * k + 7] * in_z;
+  vec4 out_z = downwind_share[9 * k + 2] * in_x + downwind_share[9 * k + 5] * in_y + downwind_share[9 * k + 8] * in_z;
+  imageStore(this_plane, ivec3(from.z, layer), out_x);
+  imageStore(this_plane, ivec3(from.z, layer + 1), out_y);
+  imageStore(this_plane, ivec3(from.z, layer + 2), out_z);
+#else
+  vec4 power = in_x + in_y + in_z;
+  imageStore(this_plane, ivec3(from.z, layer), power);
+  vec4 out_x = downwind_share[3 * k] * power;
+  vec4 out_y = downwind_share[3 * k + 1] * power;
+  vec4 out_z = downwind_share[3 * k + 2] * power;
+#endif
+  if (light.at_sides) {
+    light.leaves[0] += summed_bands(out_x, band);
+    light.leaves[1] += summed_bands(out_y, band);
+    light.leaves[2] += summed_bands(out_z, band);
   }
 }
 
-// What sides on the downwind faces receive.
-void leave(vec3 power[PER_OCTANT], uvec2 own_sides, int axis, int face, int octant) {
-  if (!has_side(own_sides, face)) return;
-  uint side = side_index(own_sides, face);
-  vec3 hit = vec3(0.0);
-  for (int d = 0; d < PER_OCTANT; ++d) hit += downwind_share[d][axis] * power[d];
-  float tau = is_opaque(own_sides, face) ? 1.0 : sides[side].coverage;
-  arrived[4 * side + entry_of_octant(octant, axis)] = vec4(tau * hit, 0.0);
+void carry_texels(From from, inout Light light) {
+#if TEXELS > 0
+  carry_texel(0, 0, from, light);
+#endif
+#if TEXELS > 1
+  carry_texel(1, 1, from, light);
+#endif
+#if TEXELS > 2
+  carry_texel(2, 2, from, light);
+#endif
+#if TEXELS > 3
+  carry_texel(3, 0, from, light);
+#endif
+#if TEXELS > 4
+  carry_texel(4, 1, from, light);
+#endif
+#if TEXELS > 5
+  carry_texel(5, 2, from, light);
+#endif
+#if TEXELS > 6
+  carry_texel(6, 0, from, light);
+#endif
+#if TEXELS > 7
+  carry_texel(7, 1, from, light);
+#endif
+#if TEXELS > 8
+  carry_texel(8, 2, from, light);
+#endif
+#if TEXELS > 9
+  carry_texel(9, 0, from, light);
+#endif
+#if TEXELS > 10
+  carry_texel(10, 1, from, light);
+#endif
+#if TEXELS > 11
+  carry_texel(11, 2, from, light);
+#endif
 }
+
+#if RADIANCE
+// Real, orthonormal, order 00, 1-1 (y), 10 (z), 11 (x).
+void store_radiance(ivec3 cell, vec3 octant_sign, Light light) {
+  vec4 y = vec4(0.28209479, 0.48860251 * octant_sign.yzx);
+  for (int i = 0; i < 4; ++i) {
+    ivec3 texel = cell + ivec3(0, 0, i * grid.cells.z);
+    imageStore(radiance_sh, texel, imageLoad(radiance_sh, texel) + vec4(y[i] * light.sh[i], 0.0));
+  }
+}
+#else
+// What reaches the downwind face of `axis`, where it has a side; the side's share is taken in collect_octants.
+void leave(uint word, int axis, int face, int octant, vec3 power) {
+  if (!word_has_side(word, face)) return;
+  ivec2 texel = side_texel(side_of(word, face)) * ivec2(4, 1) + ivec2(entry_of_octant(octant, axis), 0);
+  imageStore(arrived, texel, vec4(power, 0.0));
+}
+#endif
 
 void main() {
-  ivec3 flow = ivec3(first_column + ivec2(gl_GlobalInvocationID.xy), 0);
-  flow.z = plane - flow.x - flow.y;
-  if (!cell_inside(grid, flow)) return;
-  int octant = int(gl_WorkGroupID.z);
+  int n = int(gl_GlobalInvocationID.x);
+  if (n >= cell_count) return;
+  n += first_cell;
+  int column = int(texelFetch(column_map, ivec2(n & 1023, n >> 10), 0).x);
+  ivec3 flow = ivec3(column & 0xffff, column >> 16, 0);
+  flow.z = diagonal - flow.x - flow.y;
+  int octant = first_octant + int(gl_WorkGroupID.y);
   ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
   ivec3 cell = positive * flow + (1 - positive) * (grid.cells - 1 - flow);
-  uvec2 own_sides = cell_sides[cell_index(grid, cell)];
-  int first_layer = octant * PER_OCTANT;
-  vec3 power[PER_OCTANT];
-  for (int d = 0; d < PER_OCTANT; ++d) power[d] = vec3(0.0);
-  enter(power, own_sides, 0, 1 - positive.x, flow.x > 0, flow.xy - ivec2(1, 0), first_layer);
-  enter(power, own_sides, 1, 3 - positive.y, flow.y > 0, flow.xy - ivec2(0, 1), first_layer);
-  enter(power, own_sides, 2, 5 - positive.z, flow.z > 0, flow.xy, first_layer);
-  if ((own_sides.y & 63u) != 0u) {
-    leave(power, own_sides, 0, positive.x, octant);
-    leave(power, own_sides, 1, 2 + positive.y, octant);
-    leave(power, own_sides, 2, 4 + positive.z, octant);
+  uint word = texelFetch(cell_word, cell, 0).x;
+
+  Light light;
+  light.at_sides = (word & 63u) != 0u;
+  light.pass = vec3(greaterThan(flow, ivec3(0)));
+  for (int axis = 0; axis < 3; ++axis) light.leaves[axis] = light.sent[axis] = vec3(0.0);
+  for (int i = 0; i < 4; ++i) light.sh[i] = vec3(0.0);
+  if (light.at_sides) {
+    enter(word, 0, 1 - positive.x, light);
+    enter(word, 1, 3 - positive.y, light);
+    enter(word, 2, 5 - positive.z, light);
   }
-  for (int d = 0; d < PER_OCTANT; ++d) imageStore(this_plane, ivec3(flow.xy, first_layer + d), vec4(power[d], 0.0));
+  From from = From(ivec2(max(flow.x - 1, 0), flow.y), ivec2(flow.x, max(flow.y - 1, 0)), flow.xy, octant * TEXELS * FACES);
+  carry_texels(from, light);
+#if RADIANCE
+  store_radiance(cell, vec3(2 * positive - 1), light);
+#else
+  if (!light.at_sides) return;
+  leave(word, 0, positive.x, octant, light.leaves[0]);
+  leave(word, 1, 2 + positive.y, octant, light.leaves[1]);
+  leave(word, 2, 4 + positive.z, octant, light.leaves[2]);
+#endif
 }

@@ -15,6 +15,8 @@ layout(binding = 0) uniform sampler2D position_map;
 layout(binding = 1) uniform sampler2D normal_map;
 layout(binding = 2) uniform sampler2D albedo_map;
 
+#include "propagation/neighbourhood.glsl"
+
 uniform vec4 viewer;  // xyz position, w 1; or towards the viewer, w 0 (orthographic)
 
 layout(location = 0) out vec4 direct_radiance;    // first arrival of emission, reflected to the viewer
@@ -48,13 +50,20 @@ void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool c
   g.weight += here.weight;
 }
 
-Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_plane, int reach) {
+// `open`: bits of reachable_cells around the cell that the point lies in; within these 27 cells only such take part, so
+// that no pixel of a pillar looks at the dark inside of its other wall.
+Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_plane, int reach, uint open) {
   Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
   vec3 low = floor(point - 0.5);
   vec3 t = point - 0.5 - low;
   for (int z = -reach; z <= 1 + reach; ++z) {
     for (int y = -reach; y <= 1 + reach; ++y) {
       for (int x = -reach; x <= 1 + reach; ++x) {
+        ivec3 from_own = ivec3(low) + ivec3(x, y, z) - ivec3(floor(point)) + 1;
+        if (all(greaterThanEqual(from_own, ivec3(0))) && all(lessThan(from_own, ivec3(3))) &&
+            ((open >> (from_own.x + 3 * from_own.y + 9 * from_own.z)) & 1u) == 0u) {
+          continue;
+        }
         vec3 d = abs(vec3(x, y, z) - t);
         vec3 w = max(vec3(1.0 + float(reach)) - d, vec3(0.0));
         gather_cell(ivec3(low) + ivec3(x, y, z), point, normal, least_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
@@ -79,11 +88,15 @@ void main() {
   if (any(lessThan(point, vec3(-0.25))) || any(greaterThan(point, vec3(grid.cells) + 0.25))) return;  // faces the dark outside
   // A surface too small or too tilted for the grid to show takes what is near, then what faces its way at
   // all, at last (rims of boards, thin rods) whatever surface is near.
-  Gathered g = gather_around(point, normal, 0.70710678, true, 0);
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1);
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1);
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1);
-  if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2);
+  const uint all_open = 0x7ffffffu;
+  Gathered g = gather_around(point, normal, 0.70710678, true, 0, all_open);
+  if (g.weight == 0.0) {
+    uint open = cell_inside(grid, ivec3(floor(point))) ? reachable_cells(ivec3(floor(point))) : all_open;
+    g = gather_around(point, normal, 0.70710678, true, 1, open);
+    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, open);
+    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, open);
+    if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, open);
+  }
   if (g.weight == 0.0) return;
   vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / 3.14159265;
   direct_radiance = vec4(reflectance * g.direct / g.weight, 1.0);

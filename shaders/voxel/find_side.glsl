@@ -2,7 +2,9 @@
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 
+#ifndef VOLGI_FAMILIES_GLSL  // which has it too
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+#endif
 layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 
@@ -17,50 +19,56 @@ bool behind_side(Side side, vec3 normal, int axis, float depth) {
   return (side.depth - depth) * side.normal[axis] > 0.02 + 0.75 * bend;
 }
 
-// The side of `axis` that a surface point (cell units) belongs to: the surface, continued as a plane to the centre of the
-// point's column, blocks one face there. Where the surface ends before the centre, the nearest columns are asked.
+// The sides of `axis` that a surface point (cell units) may belong to: the surface, continued as a plane to the centre of
+// the point's column, blocks one face there. Where the surface ends before the centre, the nearest columns are asked.
+// x: the first whose normal is alike, y: the first that faces the same way at all, of those before x; -1 for none.
 // front: 1 or 0 for sides that show a triangle's front or back only, -1 for any.
-int find_side(vec3 point, vec3 normal, int axis, float least_cosine, int front) {
+ivec2 find_side(vec3 point, vec3 normal, int axis, int front) {
   int b = axis_b(axis);
   int c = axis_c(axis);
-  bool positive = normal[axis] > 0.0;
-  for (int ring = 0; ring < 9; ++ring) {
-    int k = ring == 0 ? 4 : ring <= 4 ? ring - 1 : ring;  // own column first
-    ivec3 column = ivec3(floor(point));
-    column[b] += k % 3 - 1;
-    column[c] += k / 3 - 1;
-    float depth = point[axis] + (normal[b] * (point[b] - float(column[b]) - 0.5) + normal[c] * (point[c] - float(column[c]) - 0.5)) / normal[axis];
+  int up = normal[axis] > 0.0 ? 1 : 0;
+  int face = 2 * axis + 1 - up;
+  ivec3 own = ivec3(floor(point));
+  ivec2 found = ivec2(-1);
+  for (int k = 0; k < 27 && found.x < 0; ++k) {
+    int ring = k / 3;
+    int step = k - 3 * ring;
+    int place = ring == 0 ? 4 : ring <= 4 ? ring - 1 : ring;  // own column first
+    ivec3 cell = own;
+    cell[b] += place % 3 - 1;
+    cell[c] += place / 3 - 1;
+    float depth = point[axis] + (normal[b] * (point[b] - float(cell[b]) - 0.5) + normal[c] * (point[c] - float(cell[c]) - 0.5)) / normal[axis];
     if (abs(depth - point[axis]) > 3.0) continue;
-    int i = face_of_depth(depth);
-    for (int step = 0; step < 3; ++step) {
-      ivec3 cell = column;
-      cell[axis] = i + (step == 0 ? 0 : step == 1 ? 1 : -1) - (positive ? 0 : 1);
-      if (!cell_inside(grid, cell)) continue;
-      uvec2 own_sides = cell_sides[cell_index(grid, cell)];
-      int face = 2 * axis + (positive ? 0 : 1);
-      if (!has_side(own_sides, face)) continue;
-      int index = int(side_index(own_sides, face));
-      if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
-      if (dot(sides[index].normal, normal) >= least_cosine) return index;
-    }
+    cell[axis] = face_of_depth(depth) + (step == 0 ? 0 : step == 1 ? 1 : -1) - 1 + up;
+    if (!cell_inside(grid, cell)) continue;
+    uvec2 own_sides = cell_sides[cell_index(grid, cell)];
+    if (!has_side(own_sides, face)) continue;
+    int index = int(side_index(own_sides, face));
+    if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
+    float cosine = dot(sides[index].normal, normal);
+    if (cosine >= LIKE_NORMALS) found.x = index;
+    if (cosine >= 0.0 && found.y < 0) found.y = index;
   }
-  return -1;
+  return found;
 }
 
 // A staircase of normal n has its area in the three face families as |n_x| : |n_y| : |n_z|; so goes what is at the point.
-// Weights sum to 1, or to 0 where no side faces alike.
-void sides_of_point(vec3 world_position, vec3 normal, int front, out ivec3 targets, out vec3 weights) {
-  vec3 point = cell_from_world(grid, world_position);
-  targets = ivec3(-1);
-  weights = vec3(0.0);
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    for (int axis = 0; axis < 3; ++axis) {
-      float share = abs(normal[axis]);
-      if (share < 1e-3) continue;
-      targets[axis] = find_side(point, normal, axis, attempt == 0 ? LIKE_NORMALS : 0.0, front);
-      if (targets[axis] >= 0) weights[axis] = share;
-    }
-    if (weights != vec3(0.0)) break;
+// Sides that merely face the same way count where no family has one that is alike. Weights sum to 1, or to 0 where no side
+// is found. `point` in cell units.
+void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, out vec3 weights) {
+  ivec3 alike = ivec3(-1);
+  ivec3 facing = ivec3(-1);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (abs(normal[axis]) < 1e-3) continue;
+    ivec2 found = find_side(point, normal, axis, front);
+    alike[axis] = found.x;
+    facing[axis] = found.y;
   }
+  targets = any(greaterThanEqual(alike, ivec3(0))) ? alike : facing;
+  weights = mix(vec3(0.0), abs(normal), greaterThanEqual(targets, ivec3(0)));
   weights /= max(weights.x + weights.y + weights.z, 1e-30);
+}
+
+void sides_of_point(vec3 world_position, vec3 normal, int front, out ivec3 targets, out vec3 weights) {
+  sides_of_cell_point(cell_from_world(grid, world_position), normal, front, targets, weights);
 }

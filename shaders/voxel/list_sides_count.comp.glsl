@@ -3,19 +3,20 @@
 #include "shared/grid.shared.h"
 
 layout(local_size_x = 256) in;
+#include "voxel/linear_id.glsl"
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 0) readonly buffer OpacityX { uint opacity_x[]; };
-layout(std430, binding = 1) readonly buffer OpacityY { uint opacity_y[]; };
-layout(std430, binding = 2) readonly buffer OpacityZ { uint opacity_z[]; };
+layout(std430, binding = 0) readonly buffer Coverage { float at[]; } coverage[3];
 layout(std430, binding = 3) writeonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) writeonly buffer GroupTotals { uint group_totals[]; };
+layout(std430, binding = 4) buffer GroupTotals { uint group_totals[]; };
 
 shared uint running[256];
 
-uint face_opacity(int axis, int face) { return axis == 0 ? opacity_x[face] : axis == 1 ? opacity_y[face] : opacity_z[face]; }
+float face_coverage(int axis, int face) {
+  return axis == 0 ? coverage[0].at[face] : axis == 1 ? coverage[1].at[face] : coverage[2].at[face];
+}
 
 void main() {
-  int cell = int(gl_GlobalInvocationID.x);
+  int cell = int(linear_id());
   uint lane = gl_LocalInvocationID.x;
   bool inside = cell < grid.cells.x * grid.cells.y * grid.cells.z;
   uint bits = 0u;
@@ -24,9 +25,9 @@ void main() {
     for (int face = 0; face < 6; ++face) {
       ivec3 face_cell = c;
       face_cell[face >> 1] += face & 1;
-      uint o = face_opacity(face >> 1, face_index(grid, face >> 1, face_cell));
-      if (o != 0u) bits |= 1u << face;
-      if (o >= 0x80000000u) bits |= 256u << face;
+      float covered = face_coverage(face >> 1, face_index(grid, face >> 1, face_cell));
+      if (covered > 0.0) bits |= 1u << face;
+      if (covered == 1.0) bits |= 256u << face;
     }
   }
   uint count = bitCount(bits & 63u);
@@ -39,5 +40,5 @@ void main() {
     barrier();
   }
   if (inside) cell_sides[cell] = uvec2(running[lane] - count, bits);
-  if (lane == 255u) group_totals[gl_WorkGroupID.x] = running[lane];
+  if (lane == 255u && linear_group() < uint(group_totals.length())) group_totals[linear_group()] = running[lane];
 }

@@ -1,8 +1,8 @@
 #version 450 core
 // Turns the groups' numbers of sides into the offset of each group's first side, and their sum.
 layout(local_size_x = 256) in;
+layout(std430, binding = 2) buffer Wanted { uint wanted[4]; };
 layout(std430, binding = 4) buffer GroupTotals { uint group_totals[]; };
-layout(std430, binding = 5) writeonly buffer SideCount { uint side_count; };
 uniform int groups;
 
 shared uint running[256];
@@ -25,5 +25,5 @@ void main() {
     carry += running[255];
     barrier();
   }
-  if (lane == 0u) side_count = carry;
+  if (lane == 0u) wanted[3] = carry;
 }

@@ -4,16 +4,20 @@
 
 #include <cmath>
 
+#include "core/visibility/light_flux.h"
+#include "propagation/bounces.h"
 #include "propagation/bounces_gl.h"
 #include "propagation/side_irradiance_gl.h"
 #include "propagation/transport_conservative_gl.h"
 #include "propagation/transport_ordinates_gl.h"
 #include "screen/frame.h"
 #include "screen/inject_reflective_shadow_map.h"
+#include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/support/voxels.h"
 #include "voxel/emitter_pieces.h"
+#include "voxel/voxelize_cpu.h"
 
 namespace volgi::test {
 namespace {
@@ -25,8 +29,42 @@ struct Solved {
 
 class Cavity : public GlTest {
  protected:
-  /// The volume's part of a frame, as screen/frame.cpp runs it.
+  static SchemeOptions scheme_options(Scheme scheme) {
+    SchemeOptions options;
+    options.scheme = scheme;
+    options.coarse_start = false;
+    if (scheme == Scheme::ordinates) {
+      options.directions = 48;
+      options.ordinates = Ordinates::step;
+    }
+    return options;
+  }
+
   static Solved solve(const Scene& scene, const Grid& grid, Scheme scheme, float largest_albedo) {
+    return tested_backend() == screen::Backend::cpu ? solve_cpu(scene, grid, scheme, largest_albedo)
+                                                    : solve_gpu(scene, grid, scheme, largest_albedo);
+  }
+
+  /// The volume as propagation/volume_cpu.cpp runs it, on a grid of the test's own.
+  static Solved solve_cpu(const Scene& scene, const Grid& grid, Scheme scheme, float largest_albedo) {
+    const VoxelGrid voxels = voxelize_cpu(scene, grid);
+    const std::vector<FluxSample> pieces = emitter_pieces(scene, grid);
+    SideFlux flux;
+    flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+    flux.punctual = flux.emitted;
+    deposit(voxels, pieces, flux.emitted, flux.lost);
+    if (!scene.lights.empty()) deposit(voxels, light_flux(EmbreeScene(scene), 512), flux.punctual, flux.lost);
+    Bounces bounces(make_transport(voxels, scheme_options(scheme)));
+    BounceRules rules;
+    rules.largest_albedo = largest_albedo;
+    bounces.run(voxels, flux, !pieces.empty(), rules);
+    const SideIrradiance irradiance = side_irradiance(voxels, flux, bounces);
+    return {voxels.sides(), bounces.received_direct(), bounces.received_indirect(), irradiance.direct,
+            irradiance.indirect};
+  }
+
+  /// The volume's part of a frame, as screen/volume_on_gpu.cpp runs it.
+  static Solved solve_gpu(const Scene& scene, const Grid& grid, Scheme scheme, float largest_albedo) {
     gl::PassTimer timer(context().software(), false);
     const gl::SceneBuffers buffers(scene);
     screen::ReflectiveShadowMap maps;
@@ -39,7 +77,7 @@ class Cavity : public GlTest {
     flux.begin(voxels);
     flux.inject_emitters(voxels, pieces, timer);
     screen::InjectReflectiveShadowMap().run(voxels, maps, scene, flux, timer);
-    std::unique_ptr<TransportGl> transport = std::make_unique<OrdinatesTransportGl>(grid, 48);
+    std::unique_ptr<TransportGl> transport = std::make_unique<OrdinatesTransportGl>(grid, scheme_options(scheme));
     if (scheme == Scheme::conservative) transport = std::make_unique<ConservativeTransportGl>(grid);
     BouncesGl bounces(std::move(transport));
     BounceRules rules;

@@ -53,6 +53,7 @@ class Furnace : public GlTest {
     options.size = {24, 24};
     options.volume.grid_cells = grid_cells;
     options.volume.scheme.scheme = scheme;
+    options.backend = tested_backend();
     screen::Frame frame(scene, options);
     gl::PassTimer timer(context().software(), false);
     double sum = 0.0;

@@ -117,6 +117,7 @@ TEST_F(Pictures, PassTimesSumToTheFrame) {
   screen::FrameOptions options;
   options.size = {128, 128};
   options.volume.grid_cells = 16;
+  options.backend = tested_backend();
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context().software(), true);
   for (int f = 0; f < 3; ++f) {

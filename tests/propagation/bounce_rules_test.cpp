@@ -54,5 +54,37 @@ TEST(BounceRules, ReflectionsInFlightTogether) {
   EXPECT_EQ(rules.expected_orders(), 2);
 }
 
+TEST(BounceRules, ChoosesTheSolver) {
+  BounceRules rules;
+  EXPECT_TRUE(rules.conjugate_gradients(true));
+  EXPECT_FALSE(rules.conjugate_gradients(false));
+  rules.iterations = 3;  // orders, as asked for
+  EXPECT_FALSE(rules.conjugate_gradients(true));
+  rules.solver = BounceRules::Solver::conjugate_gradients;
+  EXPECT_TRUE(rules.conjugate_gradients(true));
+  rules = {};
+  rules.bounces = 2;
+  EXPECT_FALSE(rules.conjugate_gradients(true));
+  rules = {};
+  rules.passes_a_run = 2;
+  EXPECT_FALSE(rules.conjugate_gradients(true));
+}
+
+TEST(BounceRules, ContinuesWhereAllBouncesAreAskedFor) {
+  BounceRules rules;
+  EXPECT_FALSE(rules.continues());
+  rules.warm_start = true;
+  EXPECT_TRUE(rules.continues());
+  rules.bounces = 2;
+  EXPECT_FALSE(rules.continues());
+  rules = {};
+  rules.passes_a_run = 1;
+  EXPECT_TRUE(rules.continues());
+  EXPECT_EQ(rules.arrival_cycle(false), 2);
+  rules.passes_a_run = 5;
+  EXPECT_EQ(rules.arrival_cycle(false), 5);
+  EXPECT_EQ(rules.arrival_cycle(true), 2);
+}
+
 }  // namespace
 }  // namespace volgi

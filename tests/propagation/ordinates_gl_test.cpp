@@ -1,21 +1,28 @@
-// One transport order of the `ordinates` scheme: conserves, never negative, reciprocal, linear.
+// One transport order of the `ordinates` scheme: conserves, never negative, reciprocal, linear, and what a sweep in
+// double precision says.
 #include "propagation/transport_ordinates_gl.h"
 
 #include <gtest/gtest.h>
 
+#include "tests/propagation/double_sweep.h"
 #include "tests/propagation/transport_scene.h"
 
 namespace volgi::test {
 namespace {
 
-class OrdinatesGl : public GlTest, public testing::WithParamInterface<int> {
+struct SetAndRule {
+  int directions;
+  Ordinates rule;
+};
+
+class OrdinatesGl : public GlTest, public testing::WithParamInterface<SetAndRule> {
  protected:
   void SetUp() override {
     GlTest::SetUp();
     if (IsSkipped()) return;
     voxels_ = voxelize(context(), furnished_box(), unit_grid(12));
     gpu_ = upload(voxels_);
-    transport_ = std::make_unique<OrdinatesTransportGl>(voxels_.grid, GetParam());
+    transport_ = std::make_unique<OrdinatesTransportGl>(voxels_.grid, GetParam().directions, GetParam().rule);
   }
   Powers carry(const Powers& sent) { return test::carry(*transport_, gpu_, sent); }
 
@@ -93,7 +100,72 @@ TEST_P(OrdinatesGl, SameInputSameBytes) {
   EXPECT_EQ(carry(sent), carry(sent));
 }
 
-INSTANTIATE_TEST_SUITE_P(Directions, OrdinatesGl, testing::Values(8, 24, 48));
+// Not a cube, so that no axis stands in for another.
+TEST_P(OrdinatesGl, IsTheSweepInDouble) {
+  Grid grid = unit_grid(12);
+  grid.cells = {12, 9, 7};
+  voxels_ = voxelize(context(), furnished_box(), grid);
+  gpu_ = upload(voxels_);
+  transport_ = std::make_unique<OrdinatesTransportGl>(grid, GetParam().directions, GetParam().rule);
+  const Powers sent = random_powers(voxels_.sides.size(), 51);
+  const SweepResult expected = double_sweep(voxels_, GetParam().directions, GetParam().rule, sent);
+  const Powers received = carry(sent);
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < sent.size(); ++i) {
+    for (int band = 0; band < 3; ++band) {
+      largest = std::max(largest, expected.received[i][band]);
+      worst = std::max(worst, std::abs(double(received[i][band]) - expected.received[i][band]));
+    }
+  }
+  EXPECT_LT(worst, 2e-6 * largest);
+  const auto radiance = transport_->radiance(gpu_, gl::Buffer(sent)).download();
+  ASSERT_EQ(radiance.size(), 4u);
+  worst = largest = 0.0;
+  for (size_t k = 0; k < 4; ++k) {
+    for (size_t c = 0; c < voxels_.cells.size(); ++c) {
+      for (int band = 0; band < 3; ++band) {
+        largest = std::max(largest, std::abs(expected.radiance[k][c][band]));
+        worst = std::max(worst, std::abs(double(radiance[k][c][band]) - expected.radiance[k][c][band]));
+      }
+    }
+  }
+  EXPECT_LT(worst, 2e-6 * largest);
+}
+
+// Isotropic light of radiance L sends pi L h^2 through every face: sh_00 is sqrt(4 pi) L, all others nothing.
+TEST_P(OrdinatesGl, RadianceOfAFurnace) {
+  const float h = voxels_.grid.cell_size_m;
+  const glm::vec3 radiance(1.0f, 2.0f, 0.5f);
+  Powers sent;
+  for (const Side& side : voxels_.sides) {
+    sent.emplace_back(side.coverage * glm::pi<float>() * h * h * radiance, 0.0f);
+  }
+  const auto sh = transport_->radiance(gpu_, gl::Buffer(sent)).download();
+  for (size_t c = 0; c < voxels_.cells.size(); ++c) {
+    for (int band = 0; band < 3; ++band) {
+      EXPECT_NEAR(sh[0][c][band] / (std::sqrt(4.0f * glm::pi<float>()) * radiance[band]), 1.0f, 1e-5f);
+      for (size_t k = 1; k < 4; ++k) EXPECT_NEAR(sh[k][c][band] / radiance[band], 0.0f, 1e-5f);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, OrdinatesGl,
+                         testing::Values(SetAndRule{8, Ordinates::step}, SetAndRule{24, Ordinates::step},
+                                         SetAndRule{48, Ordinates::step}, SetAndRule{8, Ordinates::characteristic},
+                                         SetAndRule{48, Ordinates::characteristic},
+                                         SetAndRule{80, Ordinates::characteristic},
+                                         SetAndRule{128, Ordinates::characteristic}),
+                         [](const auto& test) {
+                           const bool step = test.param.rule == Ordinates::step;
+                           return (step ? "Step" : "Characteristic") + std::to_string(test.param.directions);
+                         });
+
+// What goes with the grid (choose_ordinates), or what is asked for.
+TEST(OrdinatesGlOptions, AreChosen) {
+  SchemeOptions options;
+  options.directions = 7;
+  EXPECT_THROW(OrdinatesTransportGl(unit_grid(4), options), Error);
+}
 
 }  // namespace
 }  // namespace volgi::test

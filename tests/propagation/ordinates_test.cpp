@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <utility>
 
 #include "core/error.h"
 
@@ -13,7 +15,7 @@ struct Expected {
   int directions;
   double t_over_pi;  // docs/theory.md#ordinates
 };
-constexpr Expected kSets[] = {{8, 1.155}, {24, 1.086}, {48, 1.027}};
+constexpr Expected kSets[] = {{8, 1.155}, {24, 1.086}, {48, 1.0265}, {80, 1.017}, {128, 1.0106}};
 
 TEST(OrdinateSet, WeightsSumToTheSphere) {
   for (const Expected& e : kSets) {
@@ -67,13 +69,144 @@ TEST(OrdinateSet, IsSymmetric) {
   }
 }
 
+// The 128 again: the octant halved twice along great circles, each triangle its area and mean.
+class Triangles {
+ public:
+  Triangles() { split({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 2); }
+  std::vector<std::pair<glm::dvec3, double>> all;  // mean direction, area [sr]
+
+ private:
+  void split(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c, int times) {
+    if (times == 0) return add(a, b, c);
+    const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+    split(a, ab, ca, times - 1);
+    split(ab, b, bc, times - 1);
+    split(ca, bc, c, times - 1);
+    split(ab, bc, ca, times - 1);
+  }
+  void add(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    glm::dvec3 mean(0.0);  // Lambert: half the sum over edges of their angle times the normal of their plane
+    for (auto [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      mean += 0.5 * std::acos(glm::dot(p, q)) * glm::normalize(glm::cross(p, q));
+    }
+    const double area =
+        2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+    all.emplace_back(glm::normalize(mean), area);
+  }
+};
+
+TEST(OrdinateSet, GeodesicTriangles) {
+  const OrdinateSet set = ordinate_set(128);
+  for (const auto& [direction, area] : Triangles().all) {
+    int found = 0;
+    for (size_t i = 0; i < set.directions.size(); ++i) {
+      if (glm::distance(glm::dvec3(set.directions[i]), direction) > 1e-6) continue;
+      EXPECT_NEAR(double(set.weights[i]), area, 1e-6);
+      ++found;
+    }
+    EXPECT_EQ(found, 1);
+  }
+}
+
+constexpr Ordinates kRules[] = {Ordinates::step, Ordinates::characteristic};
+
+TEST(CellTransfer, ConservesAndIsReciprocal) {
+  for (Ordinates rule : kRules) {
+    for (int directions : {8, 24, 48, 80, 128}) {
+      for (glm::vec3 d : ordinate_set(directions).directions) {
+        const CellTransfer transfer = cell_transfer(rule, d);
+        for (int in = 0; in < 3; ++in) {
+          double sum = 0.0;
+          for (int out = 0; out < 3; ++out) {
+            EXPECT_GE(transfer.share[in][out], 0.0f);
+            EXPECT_NEAR(d[in] * transfer.share[in][out], d[out] * transfer.share[out][in], 1e-7f);
+            sum += double(transfer.share[in][out]);
+          }
+          EXPECT_NEAR(sum, 1.0, 1e-6);
+        }
+        // Uniform light stays uniform: as much leaves through each face as comes in opposite.
+        const glm::vec3 out = transfer.share * d;
+        EXPECT_LT(glm::distance(out, d), 1e-6f);
+        EXPECT_NEAR(glm::dot(transfer.track, d), 1.0f, 1e-6f);
+      }
+    }
+  }
+}
+
+// Rays from a fine lattice on each upwind face, followed through the cell.
+TEST(CellTransfer, CharacteristicIsTheExactOverlap) {
+  constexpr int kLattice = 400;
+  for (glm::dvec3 d : {glm::dvec3(0.3, 0.5, 0.9), {0.6, 0.6, 0.5}, {0.98, 0.1, 0.15}, {0.57735, 0.57735, 0.57735}}) {
+    d = glm::normalize(d);
+    const CellTransfer transfer = cell_transfer(Ordinates::characteristic, glm::vec3(d));
+    for (int in = 0; in < 3; ++in) {
+      glm::dvec3 share(0.0);
+      double track = 0.0;
+      for (int i = 0; i < kLattice * kLattice; ++i) {
+        glm::dvec3 to_face(1.0);  // along each axis, in cell edges
+        to_face[(in + 1) % 3] = (i % kLattice + 0.5) / kLattice;
+        to_face[(in + 2) % 3] = (i / kLattice + 0.5) / kLattice;
+        const glm::dvec3 length = to_face / d;
+        const int out = length.x <= length.y && length.x <= length.z ? 0 : length.y <= length.z ? 1 : 2;
+        share[out] += 1.0 / (kLattice * kLattice);
+        track += length[out] / (kLattice * kLattice);
+      }
+      for (int out = 0; out < 3; ++out) EXPECT_NEAR(double(transfer.share[in][out]), share[out], 3e-3) << in << out;
+      EXPECT_NEAR(double(transfer.track[in]), track, 3e-3);
+    }
+  }
+}
+
+TEST(CellTransfer, StepHandsOnInProportion) {
+  const glm::vec3 d = glm::normalize(glm::vec3(1.0f, 2.0f, 4.0f));
+  const CellTransfer transfer = cell_transfer(Ordinates::step, d);
+  for (int in = 0; in < 3; ++in) {
+    EXPECT_NEAR(transfer.share[in].y / transfer.share[in].x, 2.0f, 1e-6f);
+    EXPECT_NEAR(transfer.share[in].z / transfer.share[in].x, 4.0f, 1e-6f);
+  }
+}
+
+// Isotropic radiance L: (pi/t) w_d d_a L h^2 through each face; read out it is L times the weight again.
+TEST(RadiancePerWatt, ReadsIsotropicLight) {
+  const float h = 0.3f, radiance = 2.5f;
+  for (Ordinates rule : kRules) {
+    for (int directions : {8, 24, 48, 80, 128}) {
+      const OrdinateSet set = ordinate_set(directions);
+      for (size_t i = 0; i < set.directions.size(); ++i) {
+        const glm::vec3 power = glm::pi<float>() * radiance * h * h * set.emitted_share(i);
+        const float read = glm::dot(power, radiance_per_watt(set, i, rule, h));
+        EXPECT_NEAR(read / (radiance * set.weights[i]), 1.0f, 1e-5f);
+      }
+    }
+  }
+}
+
 TEST(OrdinateSet, RefusesOthers) {
   for (int n : {0, 7, 26, -8}) EXPECT_THROW(ordinate_set(n), Error) << n;
 }
 
-TEST(OrdinateSet, FinerGridsTakeMoreDirections) {
-  EXPECT_EQ(directions_for_grid({16, 8, 16}), 24);
-  EXPECT_EQ(directions_for_grid({17, 8, 16}), 48);
+TEST(ChooseOrdinates, FollowsTheGridAndWhatIsAskedFor) {
+  const SchemeOptions nothing;
+  EXPECT_EQ(choose_ordinates({16, 8, 16}, nothing).directions, 24);
+  EXPECT_EQ(choose_ordinates({16, 8, 16}, nothing).rule, Ordinates::step);
+  EXPECT_EQ(choose_ordinates({8, 32, 8}, nothing).directions, 48);
+  EXPECT_EQ(choose_ordinates({8, 8, 33}, nothing).directions, 128);
+  EXPECT_EQ(choose_ordinates({128, 8, 8}, nothing).directions, 128);
+  EXPECT_EQ(choose_ordinates({128, 8, 8}, nothing).rule, Ordinates::characteristic);
+  EXPECT_EQ(directions_for_grid({128, 8, 8}), 128);
+
+  SchemeOptions few;
+  few.directions = 8;
+  EXPECT_EQ(choose_ordinates({64, 64, 64}, few).directions, 8);
+  EXPECT_EQ(choose_ordinates({64, 64, 64}, few).rule, Ordinates::step);
+  SchemeOptions sharp;
+  sharp.ordinates = Ordinates::characteristic;
+  EXPECT_EQ(choose_ordinates({16, 16, 16}, sharp).directions, 48);
+  SchemeOptions both;
+  both.directions = 80;
+  both.ordinates = Ordinates::step;
+  EXPECT_EQ(choose_ordinates({16, 16, 16}, both).directions, 80);
+  EXPECT_EQ(choose_ordinates({16, 16, 16}, both).rule, Ordinates::step);
 }
 
 }  // namespace

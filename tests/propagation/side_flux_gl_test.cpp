@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "propagation/side_flux.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/support/voxels.h"
@@ -11,7 +12,7 @@
 namespace volgi::test {
 namespace {
 
-class SideFlux : public GlTest {
+class SideFluxGlTest : public GlTest {
  protected:
   struct Result {
     Voxels voxels;
@@ -31,7 +32,7 @@ class SideFlux : public GlTest {
   }
 };
 
-TEST_F(SideFlux, SumsExactlyAndFacesTheRightWay) {
+TEST_F(SideFluxGlTest, SumsExactlyAndFacesTheRightWay) {
   for (glm::vec3 normal : {glm::vec3(0, -1, 0), glm::vec3(1, 1, 0), glm::vec3(-0.3f, 0.8f, 0.5f)}) {
     for (float intensity : {1e-6f, 1.0f, 1e9f}) {
       Scene scene;
@@ -54,7 +55,7 @@ TEST_F(SideFlux, SumsExactlyAndFacesTheRightWay) {
 }
 
 // An emitter too small to block a face sends through its neighbours' sides; all of it while there are any.
-TEST_F(SideFlux, EmitterTooSmallForTheGrid) {
+TEST_F(SideFluxGlTest, EmitterTooSmallForTheGrid) {
   Scene scene;
   add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), glm::vec3(0.0f), glm::vec3(1.0f));
   add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.97f, 0.01f}, {0.0f, -1.0f, 0.0f},
@@ -72,7 +73,7 @@ TEST_F(SideFlux, EmitterTooSmallForTheGrid) {
 }
 
 // Alone in the void it has nowhere to send: the report says how much.
-TEST_F(SideFlux, WhatFindsNoSideIsReported) {
+TEST_F(SideFluxGlTest, WhatFindsNoSideIsReported) {
   Scene scene;
   add_square(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(100.0f)), {0.01f, 0.02f, 0.01f}, {0.0f, -1.0f, 0.0f},
              0.005f);
@@ -82,7 +83,7 @@ TEST_F(SideFlux, WhatFindsNoSideIsReported) {
 }
 
 // Radiosity of sides and injected flux are two roads to the same power.
-TEST_F(SideFlux, FluxIsAreaTimesRadiosity) {
+TEST_F(SideFluxGlTest, FluxIsAreaTimesRadiosity) {
   Scene scene;
   add_sphere_inside(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(1.0f)), glm::vec3(0.0f), 0.8f, 16);
   const Result r = inject(scene, unit_grid(16));
@@ -92,6 +93,29 @@ TEST_F(SideFlux, FluxIsAreaTimesRadiosity) {
     sides += double(r.voxels.sides[i].area_m2 * r.voxels.sides[i].radiosity.x);
   }
   EXPECT_NEAR(sides / flux, 1.0, 0.012);
+}
+
+// The twin on the CPU puts every sample where the GPU does.
+TEST_F(SideFluxGlTest, AsOnTheCpu) {
+  Scene scene;
+  add_sphere_inside(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(3.0f, 1.0f, 0.2f)), glm::vec3(0.0f), 0.8f,
+                    16);
+  add_square(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(9.0f)), {0.1f, 0.05f, 0.0f}, {1, 2, 3}, 0.3f);
+  add_square(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(9.0f)), {0.0f, 0.98f, 0.9f}, {0, 1, 0}, 0.01f);
+  const Result r = inject(scene, unit_grid(12));
+  const VoxelGrid voxels(r.voxels.grid, r.voxels.sides);
+  std::vector<glm::vec4> flux(voxels.side_count(), glm::vec4(0.0f));
+  glm::vec3 lost(0.0f);
+  deposit(voxels, emitter_pieces(scene, unit_grid(12)), flux, lost);
+  glm::dvec3 off(0.0), all(0.0);
+  for (size_t i = 0; i < flux.size(); ++i) {
+    off += glm::abs(glm::dvec3(flux[i]) - glm::dvec3(r.emitted[i]));
+    all += glm::dvec3(flux[i]);
+  }
+  for (int band = 0; band < 3; ++band) {
+    EXPECT_LE(off[band], 1e-5 * all[band]);
+    EXPECT_NEAR(lost[band], r.lost[band], 1e-5 * all[band]);
+  }
 }
 
 }  // namespace

@@ -98,14 +98,24 @@ class TurnedGl : public GlTest {
   }
 };
 
-TEST_F(TurnedGl, Ordinates) {
+TEST_F(TurnedGl, Step) {
   for (int directions : {8, 24, 48}) {
     expect_same(voxels(), [&](const Grid& grid) { return std::make_unique<OrdinatesTransportGl>(grid, directions); });
   }
 }
 
+TEST_F(TurnedGl, Characteristic) {
+  for (int directions : {48, 80, 128}) {
+    expect_same(voxels(), [&](const Grid& grid) {
+      return std::make_unique<OrdinatesTransportGl>(grid, directions, Ordinates::characteristic);
+    });
+  }
+}
+
 TEST_F(TurnedGl, Conservative) {
-  expect_same(voxels(), [](const Grid& grid) { return std::make_unique<ConservativeTransportGl>(grid); });
+  for (int order : {1, 2}) {
+    expect_same(voxels(), [&](const Grid& grid) { return std::make_unique<ConservativeTransportGl>(grid, order); });
+  }
 }
 
 }  // namespace

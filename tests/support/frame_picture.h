@@ -1,5 +1,7 @@
 #pragma once
 // One picture through screen::Frame, for tests.
+#include <cstdlib>
+#include <string_view>
 #include <vector>
 
 #include "core/gl/context.h"
@@ -14,8 +16,15 @@ struct Rendered {
   screen::FrameReport report;
 };
 
+/// Tests of whole frames run once for each backend: ctest sets VOLGI_TEST_BACKEND (tests/hardcases/CMakeLists.txt).
+inline screen::Backend tested_backend() {
+  const char* name = std::getenv("VOLGI_TEST_BACKEND");
+  return name != nullptr && std::string_view(name) == "cpu" ? screen::Backend::cpu : screen::Backend::gpu;
+}
+
 inline Rendered render(const gl::Context& context, const Scene& scene, const Camera& camera,
-                       const screen::FrameOptions& options) {
+                       screen::FrameOptions options) {
+  options.backend = tested_backend();
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context.software(), false);
   frame.render(camera, timer);

@@ -44,7 +44,7 @@ struct Voxels {
   }
 };
 
-inline Voxels download(const VoxelGridGl& gpu) {
+inline Voxels downloaded(const VoxelGridGl& gpu) {
   return {gpu.grid, gpu.cell_sides.download<glm::uvec2>(cell_count(gpu.grid)), gpu.download_sides()};
 }
 
@@ -53,7 +53,7 @@ inline Voxels voxelize(const gl::Context& context, SlicedVoxelization& voxelizat
   const gl::SceneBuffers buffers(scene);
   // The list of sides grows a run late: the second run has room for what the first one counted.
   for (int run = 0; run < 3; ++run) voxelization.run(buffers, timer);
-  return download(voxelization.voxels());
+  return downloaded(voxelization.voxels());
 }
 
 /// Blocked faces only: these are right from the first run on.

@@ -111,8 +111,8 @@ TEST_F(SlicedVoxels, AreasOfTiltedSquares) {
     worst = std::max(worst, std::abs(ratio - 1.0));
     ++count;
   }
-  EXPECT_NEAR(sum / count, 1.0, 0.003);
-  EXPECT_LT(worst, 0.012);  // 16 cells wide, counted by quarters of a cell at the rim
+  EXPECT_NEAR(sum / count, 1.0, 0.005);
+  EXPECT_LT(worst, 0.022);  // 16 cells wide, counted by thirds of a cell at the rim: 2.1 %
   RecordProperty("mean_ratio", std::to_string(sum / count));
   RecordProperty("worst", std::to_string(worst));
 }

@@ -1,0 +1,143 @@
+#include "apps/volgi/bench_conservative.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <vector>
+
+#include "propagation/transport_conservative_cpu.h"
+
+namespace volgi::app {
+
+namespace {
+
+using Powers = std::vector<glm::vec4>;
+
+template <typename F>
+double time_ms(const F& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> times) {
+  std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
+  return times[times.size() / 2];
+}
+
+/// Closed box of cells^3, grey walls one side a face.
+VoxelGrid closed_box(int cells) {
+  Grid grid{};
+  grid.cells = glm::ivec3(cells);
+  grid.cell_size_m = 2.0f / float(cells);
+  grid.origin = glm::vec3(-1.0f);
+  std::vector<shared::Side> sides;
+  for (int i = 0; i < int(cell_count(grid)); ++i) {
+    const glm::ivec3 cell = shared::cell_coord(grid, i);
+    for (int face = 0; face < 6; ++face) {
+      if (shared::cell_inside(grid, cell + shared::face_step(face))) continue;
+      shared::Side side{};
+      side.normal = -glm::vec3(shared::face_step(face));
+      side.coverage = 1.0f;
+      side.albedo = glm::vec3(0.5f);
+      side.area_m2 = side.face_m2 = grid.cell_size_m * grid.cell_size_m;
+      side.cell = i;
+      side.face = face;
+      sides.push_back(side);
+    }
+  }
+  return VoxelGrid(grid, std::move(sides));
+}
+
+/// Copies that many bytes with all threads, in pieces of the size of a leaf.
+double copy_ms(size_t bytes, int repeats) {
+  constexpr size_t kPiece = 24 << 10;
+  const size_t pieces = (bytes + kPiece - 1) / kPiece;
+  std::vector<char> from(pieces * kPiece, 1), to(pieces * kPiece, 2);
+  std::vector<double> times;
+  for (int i = 0; i <= repeats; ++i) {
+    times.push_back(time_ms([&] {
+      tbb::parallel_for(size_t(0), pieces, [&](size_t p) { std::memcpy(&to[p * kPiece], &from[p * kPiece], kPiece); });
+    }));
+    from.swap(to);
+  }
+  times.erase(times.begin());
+  return median(times);
+}
+
+}  // namespace
+
+nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
+  const VoxelGrid voxels = closed_box(cells);
+  ConservativeTransport transport(voxels, 1);
+  const Powers sent(voxels.side_count(), glm::vec4(1.0f, 0.8f, 0.6f, 0.0f));
+  Powers received(voxels.side_count(), glm::vec4(0.0f));
+  transport.set_dense(true);
+  transport.begin(sent);
+  for (int i = 0; i < 4; ++i) transport.pass(received, true);  // both states are touched
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) {
+    times.push_back(time_ms([&] {
+                      for (int pass = 0; pass < iterations; ++pass) transport.pass(received, true);
+                    }) /
+                    iterations);
+  }
+  const size_t state = cell_count(voxels.grid()) * 12 * sizeof(float);
+  const size_t read = state + received.size() * sizeof(glm::vec4);
+  const double copy = copy_ms(read, std::max(repeats, 5));
+  const double pass = median(times);
+  return {{"cells", cells},
+          {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
+          {"iterations", iterations},
+          {"ms_per_iteration", pass},
+          {"copy_ms", copy},
+          {"ratio", pass / copy},
+          {"bytes", 2 * read}};
+}
+
+nlohmann::json bench_sparse(const VoxelGrid& voxels, int iterations) {
+  constexpr size_t kSides = 300;
+  const Grid& grid = voxels.grid();
+  Powers sent(voxels.side_count(), glm::vec4(0.0f));
+  if (sent.empty()) return nullptr;
+  // Those nearest to the first: one corner of the scene.
+  std::vector<std::pair<int, size_t>> by_distance;
+  const glm::ivec3 first = shared::cell_coord(grid, voxels.sides().front().cell);
+  for (size_t i = 0; i < sent.size(); ++i) {
+    const glm::ivec3 d = shared::cell_coord(grid, voxels.sides()[i].cell) - first;
+    by_distance.emplace_back(d.x * d.x + d.y * d.y + d.z * d.z, i);
+  }
+  std::sort(by_distance.begin(), by_distance.end());
+  by_distance.resize(std::min(by_distance.size(), kSides));
+  for (const auto& [distance, i] : by_distance) sent[i] = glm::vec4(1.0f, 0.8f, 0.6f, 0.0f);
+
+  Powers received(sent.size(), glm::vec4(0.0f));
+  ConservativeTransport transport(voxels, 1);
+  const auto run = [&](bool dense) {
+    transport.set_dense(dense);
+    std::vector<double> times;
+    for (int i = 0; i < 4; ++i) {
+      transport.begin(sent);
+      times.push_back(time_ms([&] {
+                        for (int pass = 0; pass < iterations; ++pass) transport.pass(received, true);
+                      }) /
+                      iterations);
+    }
+    times.erase(times.begin());  // memory is fetched in the first
+    return median(times);
+  };
+  const double dense = run(true);
+  const double sparse = run(false);
+  return {{"sparse_ms", sparse},
+          {"dense_ms", dense},
+          {"speedup", dense / sparse},
+          {"leaves", transport.numbers().count()},
+          {"lit_leaves", transport.lobes().leaves().size()},
+          {"iterations", iterations}};
+}
+
+}  // namespace volgi::app

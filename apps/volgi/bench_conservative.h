@@ -1,0 +1,18 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "voxel/voxel_grid.h"
+
+namespace volgi::app {
+
+/// `conservative` on the CPU, order 1, in a closed box of cells^3 with every leaf lit, against copying what a pass must
+/// at least read and write: state and what sides received, each read once and written once.
+/// @return cells, threads, iterations, ms_per_iteration (median over repeats), copy_ms, ratio, bytes (of a pass).
+nlohmann::json bench_conservative(int cells, int iterations, int repeats);
+
+/// Sparse leaves against all leaves in every pass, over a pulse's first passes. Light starts at up to 300 sides around
+/// the first one.
+/// @return sparse_ms, dense_ms (per pass), speedup, leaves, lit_leaves (after the last pass), iterations.
+nlohmann::json bench_sparse(const VoxelGrid& voxels, int iterations);
+
+}  // namespace volgi::app

@@ -1,0 +1,278 @@
+#include "apps/volgi/bench_propagation.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "propagation/bounces.h"
+#include "voxel/emitter_pieces.h"
+#include "voxel/voxelize_cpu.h"
+
+namespace volgi::app {
+
+namespace {
+
+constexpr float kAlbedo = 0.7f;
+constexpr double kError = 0.005;  // of what the error is asked to be under
+
+double now_ms() {
+  using Clock = std::chrono::steady_clock;
+  return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
+}
+
+template <typename F>
+double median_ms(int repeats, const F& run) {
+  std::vector<double> times;
+  run();  // warm-up
+  for (int i = 0; i < repeats; ++i) {
+    const double start = now_ms();
+    run();
+    times.push_back(now_ms() - start);
+  }
+  std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
+  return times[size_t(repeats / 2)];
+}
+
+int add_material(Scene& scene, float albedo, float radiance) {
+  Material m;
+  m.base_color_factor = glm::vec4(glm::vec3(albedo), 1.0f);
+  m.metallic_factor = 0.0f;
+  m.emissive_radiance = glm::vec3(radiance);
+  scene.materials.push_back(m);
+  return int(scene.materials.size()) - 1;
+}
+
+void add_quad(Scene& scene, int material, glm::vec3 corner, glm::vec3 u, glm::vec3 v) {
+  Mesh mesh;
+  mesh.material = material;
+  mesh.object_id = std::uint32_t(scene.meshes.size()) + 1;
+  mesh.positions = {corner, corner + u, corner + u + v, corner + v};
+  mesh.normals.assign(4, glm::normalize(glm::cross(u, v)));
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.meshes.push_back(mesh);
+}
+
+/// accuracy.md's closed_box: a 2 m cube with an emitter 0.5 m square in the ceiling's middle.
+Scene closed_box() {
+  Scene scene;
+  scene.name = "closed_box";
+  const int wall = add_material(scene, kAlbedo, 0.0f);
+  const int lamp = add_material(scene, kAlbedo, 1.0f);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (float side : {-1.0f, 1.0f}) {
+      glm::vec3 n(0.0f), a(0.0f), b(0.0f);
+      n[axis] = side;
+      a[(axis + 1) % 3] = 1.0f;
+      b[(axis + 2) % 3] = -side;
+      add_quad(scene, wall, n - a - b, 2.0f * a, 2.0f * b);
+    }
+  }
+  add_quad(scene, lamp, {-0.25f, 0.999f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f});
+  update_bounds(scene);
+  return scene;
+}
+
+/// Everything that the solvers need of the box at one resolution.
+struct Box {
+  VoxelGrid voxels;
+  SideFlux flux;
+
+  explicit Box(int cells) {
+    const Scene scene = closed_box();
+    const Grid grid = make_grid(scene, cells);
+    voxels = voxelize_cpu(scene, grid);
+    flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+    flux.punctual.assign(voxels.side_count(), glm::vec4(0.0f));
+    deposit(voxels, emitter_pieces(scene, grid), flux.emitted, flux.lost);
+  }
+};
+
+/// RMS over the sides of the received indirect power, over its mean.
+double relative_error(const std::vector<glm::vec4>& test, const std::vector<glm::vec4>& reference) {
+  double squares = 0.0, sum = 0.0;
+  for (size_t i = 0; i < reference.size(); ++i) {
+    const double d = double(test[i].x) - double(reference[i].x);
+    squares += d * d;
+    sum += double(reference[i].x);
+  }
+  return std::sqrt(squares / double(reference.size())) / (sum / double(reference.size()));
+}
+
+BounceRules exact_rules() {
+  BounceRules rules;
+  rules.largest_albedo = kAlbedo;
+  rules.bounces = 60;  // 0.7^60 = 5e-10
+  return rules;
+}
+
+struct Solved {
+  double ms, error;
+  int passes;
+};
+
+/// The cheapest setting of the passes (`ordinates`: plain orders or conjugate gradients; `conservative`: passes in all)
+/// that stays under kError.
+Solved solve_ordinates(const Box& box, int directions, Ordinates rule, BounceRules::Solver solver, int repeats) {
+  SchemeOptions scheme;
+  scheme.directions = directions;
+  scheme.ordinates = rule;
+  Bounces bounces(make_transport(box.voxels, scheme));
+  bounces.run(box.voxels, box.flux, true, exact_rules());
+  const std::vector<glm::vec4> converged = bounces.received_indirect();
+  BounceRules rules;
+  rules.largest_albedo = kAlbedo;
+  rules.solver = solver;
+  BounceReport report;
+  const double ms = median_ms(repeats, [&] { report = bounces.run(box.voxels, box.flux, true, rules); });
+  return {ms, relative_error(bounces.received_indirect(), converged), report.passes};
+}
+
+Solved solve_conservative(const Box& box, int repeats) {
+  SchemeOptions scheme;
+  scheme.scheme = Scheme::conservative;
+  scheme.coarse_start = false;
+  Bounces bounces(make_transport(box.voxels, scheme));
+  BounceRules rules;
+  rules.largest_albedo = kAlbedo;
+  rules.iterations = 60 * std::max(box.voxels.grid().cells.x, 16);
+  bounces.run(box.voxels, box.flux, true, rules);
+  const std::vector<glm::vec4> converged = bounces.received_indirect();
+  const int cells = box.voxels.grid().cells.x;
+  Solved solved{0.0, 1.0, 0};
+  for (int passes = 6 * cells; solved.error > kError && passes < 60 * cells; passes += 2 * cells) {
+    rules.iterations = passes;
+    bounces.run(box.voxels, box.flux, true, rules);
+    solved = {0.0, relative_error(bounces.received_indirect(), converged), passes};
+  }
+  rules.iterations = solved.passes;
+  solved.ms = median_ms(std::max(1, repeats / 3), [&] { bounces.run(box.voxels, box.flux, true, rules); });
+  return solved;
+}
+
+nlohmann::json solved_json(int cells, const std::string& what, const Solved& s) {
+  return {{"cells", cells}, {"solver", what}, {"ms", s.ms}, {"error_percent", 100.0 * s.error}, {"passes", s.passes}};
+}
+
+/// Slope of log y over log x by least squares.
+double exponent(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  const double n = double(x.size());
+  for (size_t i = 0; i < x.size(); ++i) {
+    const double lx = std::log(x[i]), ly = std::log(y[i]);
+    sx += lx;
+    sy += ly;
+    sxx += lx * lx;
+    sxy += lx * ly;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+/// Bytes per second of a parallel copy of `bytes` [GB/s], read and write counted.
+double copy_gb_per_s(size_t bytes, int repeats) {
+  std::vector<char> from(bytes, 1), to(bytes, 0);
+  constexpr size_t kChunk = 1 << 16;
+  const double ms = median_ms(repeats, [&] {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, (bytes + kChunk - 1) / kChunk), [&](const auto& range) {
+      const size_t first = range.begin() * kChunk;
+      std::memcpy(to.data() + first, from.data() + first, std::min(bytes, range.end() * kChunk) - first);
+    });
+  });
+  return 2.0 * double(bytes) / (ms * 1e6);
+}
+
+double pass_ms(const Box& box, const SchemeOptions& scheme, int passes, int repeats) {
+  const auto transport = make_transport(box.voxels, scheme);
+  std::vector<glm::vec4> received(box.voxels.side_count(), glm::vec4(0.0f));
+  BounceRules rules;
+  rules.iterations = passes;
+  const bool sweeps = !transport->iterative();
+  return median_ms(repeats, [&] {
+    BounceReport report;
+    for (int i = 0; i < (sweeps ? passes : 1); ++i) transport->carry(box.flux.emitted, received, rules, report);
+  });
+}
+
+nlohmann::json growth(Scheme scheme_kind, int largest_grid, int repeats) {
+  SchemeOptions scheme;
+  scheme.scheme = scheme_kind;
+  scheme.directions = 24;
+  scheme.ordinates = Ordinates::step;
+  scheme.coarse_start = false;
+  if (scheme_kind != Scheme::ordinates) scheme.directions.reset();
+  nlohmann::json rows = nlohmann::json::array();
+  std::vector<double> cells, times;
+  constexpr int kPasses = 8;
+  for (int n = 32; n <= largest_grid; n += n < 64 ? 16 : 32) {
+    const Box box(n);
+    const double ms = pass_ms(box, scheme, kPasses, repeats) / kPasses;
+    const double count = double(n) * n * n;
+    const double copy = copy_gb_per_s(size_t(count) * 48, repeats);
+    rows.push_back({{"cells", n}, {"ms_a_pass", ms}, {"ns_a_cell", ms * 1e6 / count}, {"copy_GB_per_s", copy}});
+    cells.push_back(count);
+    times.push_back(ms);
+  }
+  const Box box(32);
+  std::vector<double> passes, pass_times;
+  for (int p : {8, 16, 32, 64}) {
+    passes.push_back(p);
+    pass_times.push_back(pass_ms(box, scheme, p, repeats));
+  }
+  return {
+      {"rows", rows}, {"exponent_cells", exponent(cells, times)}, {"exponent_passes", exponent(passes, pass_times)}};
+}
+
+}  // namespace
+
+nlohmann::json bench_propagation(int largest_grid, int repeats) {
+  nlohmann::json solved = nlohmann::json::array();
+  for (int n : {32, largest_grid}) {
+    const Box box(n);
+    using Solver = BounceRules::Solver;
+    solved.push_back(solved_json(n, "ordinates, step, 24, conjugate gradients",
+                                 solve_ordinates(box, 24, Ordinates::step, Solver::conjugate_gradients, repeats)));
+    solved.push_back(solved_json(n, "ordinates, step, 24, plain bounces",
+                                 solve_ordinates(box, 24, Ordinates::step, Solver::plain, repeats)));
+    for (int directions : {48, 80, 128}) {
+      solved.push_back(solved_json(
+          n, fmt::format("ordinates, characteristic, {}, conjugate gradients", directions),
+          solve_ordinates(box, directions, Ordinates::characteristic, Solver::conjugate_gradients, repeats)));
+    }
+    solved.push_back(solved_json(n, "conservative", solve_conservative(box, repeats)));
+    solved.back()["over_ordinates"] = solved.back()["ms"].get<double>() / solved[solved.size() - 6]["ms"].get<double>();
+  }
+  return {{"scene", "closed box, albedo 0.7, emitter 0.5 m in the ceiling"},
+          {"solved", solved},
+          {"growth",
+           {{"ordinates", growth(Scheme::ordinates, largest_grid, repeats)},
+            {"conservative", growth(Scheme::conservative, largest_grid, repeats)}}}};
+}
+
+std::string propagation_table(const nlohmann::json& r) {
+  std::string text =
+      fmt::format("{}, to {} % of its own converged answer:\n", r["scene"].get<std::string>(), 100.0 * kError);
+  for (const auto& s : r["solved"]) {
+    text += fmt::format("  {:>4}^3  {:<48} {:9.2f} ms  {:4} passes  error {:.3f} %", s["cells"].get<int>(),
+                        s["solver"].get<std::string>(), s["ms"].get<double>(), s["passes"].get<int>(),
+                        s["error_percent"].get<double>());
+    if (s.contains("over_ordinates")) text += fmt::format("  ({:.1f} x ordinates)", s["over_ordinates"].get<double>());
+    text += '\n';
+  }
+  for (const char* scheme : {"ordinates", "conservative"}) {
+    const auto& g = r["growth"][scheme];
+    text += fmt::format("{}: time grows as cells^{:.2f}, as passes^{:.2f}\n", scheme, g["exponent_cells"].get<double>(),
+                        g["exponent_passes"].get<double>());
+    for (const auto& row : g["rows"]) {
+      text += fmt::format("  {:>4}^3  {:8.3f} ms a pass  {:6.2f} ns a cell  (copy {:.1f} GB/s at 48 bytes a cell)\n",
+                          row["cells"].get<int>(), row["ms_a_pass"].get<double>(), row["ns_a_cell"].get<double>(),
+                          row["copy_GB_per_s"].get<double>());
+    }
+  }
+  return text;
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,18 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "core/scene.h"
+
+namespace volgi::app {
+
+/// Times of the CPU's voxelization, and of OpenVDB's meshToVolume (narrow band of one cell on both sides, same spacing)
+/// in the same run: what is asked of the first is a ratio. Medians over `repeats` runs that take turns, after one that
+/// warms up; all threads.
+/// @return {"scene", "triangles", "threads", "grid": [x,y,z], "sides", "cells", "repeats", "sides_ms", "cells_ms",
+///   "all_ms", "mesh_to_volume_ms", "ratio"}: sides_ms for sides with normal, albedo, emission and area (voxelize_cpu),
+///   cells_ms for occupancy, albedo, normal and emission of cells (cell_volumes_cpu), all_ms for both in one go; ratio
+///   is mesh_to_volume_ms / sides_ms.
+/// Source: docs/theory.md#voxelization; Museth 2013, "VDB: High-Resolution Sparse Volumes with Dynamic Topology".
+nlohmann::json bench_voxelize(const Scene& scene, int grid_cells, int repeats);
+
+}  // namespace volgi::app

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "apps/volgi/commands.h"
+#include "apps/volgi/volume_options.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "core/progress.h"
+#include "propagation/ordinates.h"
+#include "propagation/volume_cpu.h"
+#include "volgi_version.h"
+#include "voxel/vdb_file.h"
+
+namespace volgi::app {
+
+namespace {
+
+struct ExportCommand {
+  std::filesystem::path scene_path, out;
+  double time_s = 0.0;
+  VolumeCommandOptions volume;
+  std::string stage = "radiance", backend = "auto";
+  bool quiet = false;
+
+  bool has_radiance() const { return stage == "radiance"; }
+  int run() const;
+};
+
+std::string scheme_text(const VolumeOptions& options, const Grid& grid) {
+  const std::string name = scheme_name(options.scheme.scheme);
+  if (options.scheme.scheme == Scheme::ordinates)
+    return fmt::format("{} with {} directions", name, choose_ordinates(grid.cells, options.scheme).directions);
+  return fmt::format("{} with spherical harmonics of order {}", name, options.scheme.sh_order);
+}
+
+/// The file's grids, with names, units and transforms.
+class ExportGrids {
+ public:
+  explicit ExportGrids(openvdb::math::Transform::Ptr world_from_index) : transform_(std::move(world_from_index)) {}
+
+  void add_cells(const CellVolumes& cells) {
+    add(cells.occupancy,
+        {"occupancy", "1", "largest share of light that a surface in the cell stops", openvdb::GRID_FOG_VOLUME});
+    add(cells.albedo, {"albedo", "1", "diffuse albedo, mean over the surface in the cell, linear RGB"});
+    add(cells.normal, {"normal", "1", "mean of the surface's fronts in the cell, unit length or zero",
+                       openvdb::GRID_UNKNOWN, openvdb::VEC_COVARIANT_NORMALIZE});
+    add(cells.emission, {"emission", "W m^-2", "largest radiosity that the surface in the cell emits, linear RGB"});
+  }
+
+  void add_radiance(const RadianceVolume& radiance) {
+    add(fluence(radiance), {"fluence", "W m^-2", "radiance over all directions, sqrt(4 pi) sh_00, linear RGB"});
+    for (size_t i = 0; i < radiance.sh.size(); ++i) {
+      const std::string name = sh_grid_name(int(i));
+      add(radiance.sh[i], {name, "W m^-2 sr^-1",
+                           "radiance by the direction that light travels, linear RGB: coefficient " + name.substr(3) +
+                               " of real orthonormal spherical harmonics"});
+    }
+  }
+
+  const openvdb::GridCPtrVec& grids() const { return grids_; }
+
+ private:
+  void add(const openvdb::GridBase::Ptr& grid, const GridLabel& label) {
+    grid->setTransform(transform_->copy());
+    label_grid(*grid, label);
+    grids_.push_back(grid);
+  }
+
+  openvdb::math::Transform::Ptr transform_;
+  openvdb::GridCPtrVec grids_;
+};
+
+/// How the file came to be. Nothing that changes from run to run.
+openvdb::MetaMap file_metadata(const ExportCommand& command, const VolumeOptions& options, const VolumeCpu& computed,
+                               const Scene& scene) {
+  openvdb::MetaMap metadata;
+  const auto text = [&](const char* key, const std::string& value) {
+    metadata.insertMeta(key, openvdb::StringMetadata(value));
+  };
+  const auto number = [&](const char* key, int value) { metadata.insertMeta(key, openvdb::Int32Metadata(value)); };
+  const Grid& grid = computed.grid();
+  text("software", VOLGI_VERSION);
+  text("scene", scene.name);
+  metadata.insertMeta("time_s", openvdb::DoubleMetadata(command.time_s));
+  text("units", "SI: lengths in m, quantities in each grid's unit; right-handed, +Y up");
+  metadata.insertMeta("grid_cells", openvdb::Vec3IMetadata({grid.cells.x, grid.cells.y, grid.cells.z}));
+  metadata.insertMeta("cell_size_m", openvdb::DoubleMetadata(double(grid.cell_size_m)));
+  text("backend", "cpu");
+  text("stage", command.stage);
+  if (!command.has_radiance()) return metadata;
+  text("scheme", scheme_name(options.scheme.scheme));
+  if (options.scheme.scheme == Scheme::ordinates)
+    number("directions", choose_ordinates(grid.cells, options.scheme).directions);
+  number("sh_order", options.scheme.sh_order);
+  text("bounces", options.bounces ? std::to_string(*options.bounces) : "all");
+  const BounceReport& report = computed.report();
+  number("orders", report.orders);
+  number("iterations", report.passes);
+  metadata.insertMeta("converged", openvdb::BoolMetadata(report.converged));
+  return metadata;
+}
+
+int ExportCommand::run() const {
+  set_quiet(quiet);
+  volume.limit_threads();
+  const VolumeOptions options = volume.volume_options();
+  if (out.extension() != ".vdb") throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .vdb");
+  check_writable(out);
+  const Scene scene = load_scene(scene_path, time_s);
+  VolumeCpu computed(scene, options);
+
+  Progress progress("export", has_radiance() ? 5 : 2);
+  if (has_radiance()) {
+    computed.voxelize();
+    progress.advance();
+    computed.light_in();
+    progress.advance();
+    computed.propagate();
+    progress.advance();
+  }
+  ExportGrids grids(world_from_index(computed.grid(), scene.world_origin));
+  grids.add_cells(computed.cells());
+  if (has_radiance()) grids.add_radiance(computed.radiance());
+  progress.advance();
+  write_vdb(out, grids.grids(), file_metadata(*this, options, computed, scene));
+  progress.advance();
+
+  if (quiet) return int(ExitCode::done);
+  const Grid& grid = computed.grid();
+  fmt::print("{}: {} x {} x {} cells of {:.6g} m", scene.name, grid.cells.x, grid.cells.y, grid.cells.z,
+             grid.cell_size_m);
+  if (has_radiance())
+    fmt::print(", {}, {} orders in {} passes", scheme_text(options, grid), computed.report().orders,
+               computed.report().passes);
+  fmt::print("\nwrote {}: {} grids\n", out.string(), grids.grids().size());
+  return int(ExitCode::done);
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ExportCommand>();
+  CLI::App* command = app.add_subcommand("export", "write the voxels and the radiance of a scene's volume as OpenVDB");
+  command->add_option("SCENE", options->scene_path, "glTF 2.0 scene (.gltf or .glb)")->required()->type_name("FILE");
+  command->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb")->required()->type_name("FILE");
+  options->volume.add_to(*command);
+  command
+      ->add_option("--stage", options->stage,
+                   "voxels: occupancy, albedo, normal, emission; radiance: fluence and spherical harmonics as well")
+      ->check(CLI::IsMember({"voxels", "radiance"}))
+      ->capture_default_str();
+  command->add_option("--backend", options->backend, "where the volume is computed; the same on any machine")
+      ->check(CLI::IsMember({"auto", "cpu"}))
+      ->capture_default_str();
+  command->add_option("--time", options->time_s, "time of the file's animations [s]")
+      ->check(CLI::Number)
+      ->capture_default_str();
+  command->add_flag("--quiet", options->quiet, "print nothing but errors");
+  command->footer(
+      "Values are floats, in the unit that each grid names; blender and houdini open the file, vdb_print -l lists it.\n"
+      "Example: volgi export data/cornell.glb -o out/cornell.vdb --grid 32");
+  command->callback([options, &exit_code] { exit_code = options->run(); });
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,35 @@
+#pragma once
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace volgi {
+
+/// Coarser levels of a scene's textures, for sampling surfaces at a distance (a voxel's) without aliasing. CPU twin of
+/// GL's mipmaps: level k has half the edge of level k-1, rounded down, at least 1; filtered in linear light.
+/// Memory: a third of the textures' size as floats, for textures that are used as colours and as data apart.
+class Mipmaps {
+ public:
+  /// Makes no levels yet; prepare() those that will be sampled. The scene must outlive this.
+  explicit Mipmaps(const Scene& scene);
+  /// Not thread-safe; sample() is.
+  void prepare(int texture, bool srgb);
+
+  /// RGBA in linear light at level of detail `lod` (0: the texture itself; fractions between two levels), filtered as
+  /// the texture's sampler says. The texture must have been prepared.
+  glm::vec4 sample(int texture, glm::vec2 uv, float lod, bool srgb) const;
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::vector<glm::vec4> texels;
+  };
+  using Chain = std::vector<Level>;  // from level 1
+  glm::vec4 sample_level(const Texture& texture, const Level& level, glm::vec2 uv) const;
+
+  const Scene& scene_;
+  std::vector<Chain> chains_[2];  // by image; data, colours
+};
+
+}  // namespace volgi

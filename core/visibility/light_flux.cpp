@@ -1,0 +1,153 @@
+#include "core/visibility/light_flux.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/light_layers.h"
+#include "core/surface.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr int kGroup = 4;  // texels on the edge of what is merged; as inject_reflective_shadow_map.comp.glsl
+
+// Two texels are of one plane when their normals part by less than 2.6 degrees, and one lies within 1/25 of the merging
+// distance of the other's plane.
+constexpr float kSameNormal = 0.999f;
+constexpr float kSamePlane = 0.04f;
+
+struct Layer {
+  shared::PunctualLight light;
+  shared::ReflectiveShadowLayer view;
+  int layer_count;
+  int resolution;
+  std::uint32_t first_texel;  // of this layer among all: what BLEND is hashed with
+};
+
+std::vector<Layer> layers_of(const Scene& scene, int texels_on_edge) {
+  std::vector<Layer> layers;
+  std::uint32_t texels = 0;
+  for (const Light& light : scene.lights) {
+    int resolution = light.type == Light::Type::directional ? 2 * texels_on_edge : texels_on_edge;
+    auto views = reflective_shadow_layers(light, resolution, scene.bounds_min, scene.bounds_max);
+    if (views.size() > 1) {
+      resolution = texels_on_edge / 2;
+      views = reflective_shadow_layers(light, resolution, scene.bounds_min, scene.bounds_max);
+    }
+    for (const shared::ReflectiveShadowLayer& view : views) {
+      layers.push_back({to_shared(light), view, int(views.size()), resolution, texels});
+      texels += std::uint32_t(resolution) * std::uint32_t(resolution);
+    }
+  }
+  return layers;
+}
+
+struct TexelRay {
+  glm::vec3 origin, direction;
+  glm::vec3 power;  // before the range window [W]
+};
+
+TexelRay ray_through(const Layer& layer, glm::ivec2 texel) {
+  const glm::vec2 uv = (glm::vec2(texel) + 0.5f) * (2.0f / float(layer.resolution)) - 1.0f;
+  const shared::ReflectiveShadowLayer& view = layer.view;
+  const float measure = shared::rsm_texel_measure(view, layer.resolution, uv.x, uv.y);
+  TexelRay ray{view.origin, view.forward, layer.light.intensity * measure};
+  if (view.directional != 0) {
+    ray.origin = shared::rsm_position_from_uvz(view, glm::vec3(uv, 0.0f));
+    return ray;
+  }
+  ray.direction = glm::normalize(shared::rsm_position_from_uvz(view, glm::vec3(uv, 1.0f)) - view.origin);
+  if (layer.light.type == LIGHT_SPOT) ray.power *= shared::spot_falloff(layer.light, ray.direction);
+  return ray;
+}
+
+/// What the light sees through one texel; no flux: nothing, or another layer counts it.
+FluxSample texel_flux(const EmbreeScene& embree, const Layer& layer, glm::ivec2 texel) {
+  FluxSample none{};
+  if (!shared::rsm_texel_counts(layer.layer_count, layer.resolution, texel.x, texel.y)) return none;
+  const TexelRay ray = ray_through(layer, texel);
+  if (ray.power == glm::vec3(0.0f)) return none;
+  const std::uint32_t seed = layer.first_texel + std::uint32_t(texel.y * layer.resolution + texel.x);
+  RayHit hit;
+  if (!embree.intersect(ray.origin, ray.direction, std::numeric_limits<float>::infinity(), seed, hit)) return none;
+  const Scene& scene = embree.scene();
+  const SurfacePoint at = surface_point(scene, scene.meshes[hit.mesh], hit.triangle, hit.u, hit.v);
+  const float window = layer.view.directional != 0 ? 1.0f : shared::range_window(layer.light, hit.distance);
+  const bool front = glm::dot(at.geometric_normal, ray.direction) < 0.0f;
+  return {at.position, front ? at.geometric_normal : -at.geometric_normal, ray.power * window * at.albedo};
+}
+
+/// Texels of a group that lie on the first one's plane, added up.
+class Merge {
+ public:
+  explicit Merge(float within_m) : within_m_(within_m) {}
+
+  /// @return false where the sample has to stay by itself.
+  bool add(const FluxSample& sample) {
+    if (within_m_ <= 0.0f) return false;
+    if (count_ == 0) first_ = sample;
+    const glm::vec3 offset = sample.position - first_.position;
+    if (glm::dot(sample.normal, first_.normal) < kSameNormal || glm::length(offset) > within_m_ ||
+        std::abs(glm::dot(offset, first_.normal)) > kSamePlane * within_m_) {
+      return false;
+    }
+    offsets_ += offset;
+    flux_ += sample.flux;
+    ++count_;
+    return true;
+  }
+  void put(std::vector<FluxSample>& samples) const {
+    if (count_ > 0) samples.push_back({first_.position + offsets_ / float(count_), first_.normal, flux_});
+  }
+
+ private:
+  float within_m_;
+  FluxSample first_{};
+  glm::vec3 offsets_{0.0f}, flux_{0.0f};
+  int count_ = 0;
+};
+
+/// One row of groups of a layer.
+std::vector<FluxSample> row_flux(const EmbreeScene& embree, const Layer& layer, int row, float merge_within_m) {
+  std::vector<FluxSample> samples;
+  const int last_y = std::min((row + 1) * kGroup, layer.resolution);
+  for (int x = 0; x < layer.resolution; x += kGroup) {
+    Merge merge(merge_within_m);
+    const int last_x = std::min(x + kGroup, layer.resolution);
+    for (glm::ivec2 texel(x, row * kGroup); texel.y < last_y; ++texel.y) {
+      for (texel.x = x; texel.x < last_x; ++texel.x) {
+        const FluxSample sample = texel_flux(embree, layer, texel);
+        if (sample.flux != glm::vec3(0.0f) && !merge.add(sample)) samples.push_back(sample);
+      }
+    }
+    merge.put(samples);
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge, float merge_within_m) {
+  assert(texels_on_edge >= 16);
+  struct Row {
+    const Layer* layer;
+    int row;
+  };
+  const std::vector<Layer> layers = layers_of(embree.scene(), texels_on_edge);
+  std::vector<Row> rows;
+  for (const Layer& layer : layers) {
+    for (int row = 0; row * kGroup < layer.resolution; ++row) rows.push_back({&layer, row});
+  }
+  std::vector<std::vector<FluxSample>> found(rows.size());
+  oneapi::tbb::parallel_for(size_t(0), rows.size(), [&](size_t i) {
+    found[i] = row_flux(embree, *rows[i].layer, rows[i].row, merge_within_m);
+  });
+  std::vector<FluxSample> samples;
+  for (const std::vector<FluxSample>& row : found) samples.insert(samples.end(), row.begin(), row.end());
+  return samples;
+}
+
+}  // namespace volgi

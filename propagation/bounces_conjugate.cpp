@@ -1,0 +1,106 @@
+// Conjugate gradients over bounces: see bounces.h for the equations.
+#include <algorithm>
+
+#include "propagation/bounces.h"
+#include "propagation/side_loops.h"
+
+namespace volgi {
+
+namespace {
+
+using Powers = std::vector<glm::vec4>;
+
+/// <a,b> = sum of a b / (f tau), per band; what sides that return nothing send is not looked for.
+glm::dvec3 product(const Powers& response, const Powers& a, const Powers& b) {
+  return sum_over_sides(a.size(), [&](size_t i) {
+    glm::dvec3 term(0.0);
+    for (int band = 0; band < 3; ++band) {
+      const double weight = double(response[i][band]) * double(response[i].w);
+      if (weight > 0.0) term[band] = double(a[i][band]) * double(b[i][band]) / weight;
+    }
+    return term;
+  });
+}
+
+/// <d, (I - fK) d> where y = K d.
+glm::dvec3 curvature(const Powers& response, const Powers& d, const Powers& y) {
+  return sum_over_sides(d.size(), [&](size_t i) {
+    glm::dvec3 term(0.0);
+    for (int band = 0; band < 3; ++band) {
+      const double f = double(response[i][band]);
+      const double weight = f * double(response[i].w);
+      if (weight > 0.0) term[band] = double(d[i][band]) * (double(d[i][band]) - f * double(y[i][band])) / weight;
+    }
+    return term;
+  });
+}
+
+glm::dvec3 magnitude(const Powers& powers) {
+  return sum_over_sides(powers.size(), [&](size_t i) { return glm::abs(glm::dvec3(powers[i])); });
+}
+
+glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
+  glm::dvec3 q(0.0);
+  for (int band = 0; band < 3; ++band) {
+    if (b[band] > 0.0) q[band] = a[band] / b[band];
+  }
+  return q;
+}
+
+}  // namespace
+
+void Bounces::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
+  const BounceRules& rules = run.rules;
+  const size_t count = source_.size();
+  const int most = std::min(rules.iterations.value_or(BounceRules::kMostConjugate), BounceRules::kMostConjugate);
+  Powers& p = received_indirect_;
+  report.conjugate_gradients = true;
+
+  // v is what the last answer makes sides send; q = f P - v, with P = K(e + v).
+  Powers q(count), d(count);
+  for_each_side(count, [&](size_t i) {
+    q[i] = glm::vec4(glm::vec3(response_[i]), 0.0f) * share * p[i];
+    sent_[i] = source_[i] + q[i];
+  });
+  const glm::dvec3 before = glm::dvec3(report.sent);
+  if (sum_over_sides(count, [&](size_t i) { return glm::dvec3(sent_[i]); }) == glm::dvec3(0.0)) {
+    std::fill(p.begin(), p.end(), glm::vec4(0.0f));
+    report.converged = true;
+    return;
+  }
+  carry(sent_, rules, report);
+  p.swap(received_);
+  for_each_side(count, [&](size_t i) {
+    q[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(p[i]), 0.0f) - q[i];
+    d[i] = q[i];
+  });
+  glm::dvec3 qq = product(response_, q, q);
+  for (int pass = 1;; ++pass) {
+    const glm::vec3 next(magnitude(q));
+    report.sent = glm::vec3(before + sum_over_sides(count, [&](size_t i) {
+                              return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]);
+                            }));
+    report.converged = rules.orders_ended(next, report.sent);
+    if (report.converged || pass == most) {
+      report.left += next;
+      break;
+    }
+    carry(d, rules, report);
+    const Powers& y = received_;
+    // No bounce is taken to lose less than kLeastLoss: a closed white room has no answer.
+    const glm::dvec3 bend = glm::max(curvature(response_, d, y), BounceRules::kLeastLoss * product(response_, d, d));
+    const glm::vec4 alpha(quotient(qq, bend), 0.0f);
+    for_each_side(count, [&](size_t i) {
+      p[i] += alpha * y[i];
+      q[i] -= alpha * (d[i] - glm::vec4(glm::vec3(response_[i]) * glm::vec3(y[i]), 0.0f));
+    });
+    const glm::dvec3 last = qq;
+    qq = product(response_, q, q);
+    const glm::vec4 beta(quotient(qq, last), 0.0f);
+    for_each_side(count, [&](size_t i) { d[i] = q[i] + beta * d[i]; });
+  }
+  // The answer is not negative, so this takes it nearer where the last steps have overshot.
+  for_each_side(count, [&](size_t i) { p[i] = glm::max(p[i], 0.0f); });
+}
+
+}  // namespace volgi

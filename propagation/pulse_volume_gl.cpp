@@ -1,0 +1,129 @@
+#include "propagation/pulse_volume_gl.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr glm::ivec3 kLocal{8, 8, 4};  // pulse_*.comp.glsl, add_radiance.comp.glsl
+
+const SchemeOptions& checked(const SchemeOptions& options) {
+  if (carries_sides(options.scheme)) {
+    throw Error(ExitCode::usage, "a pulse without orders is what lpv2009 and gaitatzes2010 are; use one of them");
+  }
+  return options;
+}
+
+}  // namespace
+
+PulseVolumeGl::PulseVolumeGl(const Grid& grid, const SchemeOptions& options)
+    : grid_(grid),
+      options_(checked(options)),
+      inject_(compile("pulse_inject")),
+      pass_(compile(options.scheme == Scheme::lpv2009 ? "pulse_lpv" : "pulse_gaitatzes")),
+      add_radiance_(compile("add_radiance")),
+      sum_sent_(gl::Program::compute("propagation/sum_sent.comp.glsl")),
+      sum_lobes_(compile("sum_in_flight")),
+      sum_partials_(gl::Program::compute("propagation/sum_partials.comp.glsl")),
+      radiance_(grid, options.sh_order == 1 ? 4 : 9),
+      partials_(64 * sizeof(glm::vec4)),
+      sum_(sizeof(glm::vec4)),
+      readback_(sizeof(glm::vec4), 2) {
+  const int texels = options.sh_order == 1 ? 3 : 7;  // a cell (lobes.glsl)
+  for (gl::Texture* t : {&lobes_[0], &lobes_[1], &accumulated_[0], &accumulated_[1]}) {
+    *t = gl::Texture::make_3d(GL_RGBA32F, {grid.cells.x, grid.cells.y, texels * grid.cells.z});
+  }
+}
+
+gl::Program PulseVolumeGl::compile(const char* shader) const {
+  return gl::Program::compute(fmt::format("propagation/{}.comp.glsl", shader),
+                              {fmt::format("ORDER {}", options_.sh_order), "PULSE 1"});
+}
+
+void PulseVolumeGl::dispatch_cells() const {
+  gl::dispatch(grid_.cells, kLocal);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+BounceReport PulseVolumeGl::run(const VoxelGridGl& voxels, const gl::Texture& normal_occupancy,
+                                const gl::Texture& albedo, const gl::Buffer& side_flux, int iterations,
+                                gl::PassTimer& timer) {
+  auto scope = timer.scope("propagation/propagate");
+  voxels.bind();
+  sum_side_flux(side_flux);
+  side_flux.bind_storage(7);
+  lobes_[current_].bind_image(0, GL_WRITE_ONLY);
+  inject_.use();
+  dispatch_cells();
+  accumulated_[current_].clear({0.0f, 0.0f, 0.0f, 0.0f});
+  if (options_.scheme == Scheme::gaitatzes2010) {
+    normal_occupancy.bind(2);
+    albedo.bind(3);
+    pass_.set("constant_albedo", int(options_.constant_albedo));
+  }
+  for (int i = 0; i < iterations; ++i) pass();
+  sum_in_flight();
+  read_out();
+  BounceReport report;
+  report.passes = iterations;
+  glm::vec4 sum;
+  readback_.pop(&sum);
+  report.sent = glm::vec3(sum);
+  readback_.pop(&sum);
+  report.left = glm::vec3(sum);
+  return report;
+}
+
+void PulseVolumeGl::pass() {
+  lobes_[current_].bind(0);
+  accumulated_[current_].bind(1);
+  lobes_[1 - current_].bind_image(0, GL_WRITE_ONLY);
+  accumulated_[1 - current_].bind_image(1, GL_WRITE_ONLY);
+  pass_.use();
+  dispatch_cells();
+  current_ = 1 - current_;
+}
+
+void PulseVolumeGl::sum_side_flux(const gl::Buffer& side_flux) {
+  side_flux.bind_storage(7);
+  partials_.bind_storage(10);
+  sum_.bind_storage(11);
+  sum_sent_.use();
+  glDispatchCompute(64, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_partials_.use();
+  glDispatchCompute(1, 1, 1);
+  readback_.push(sum_);
+}
+
+void PulseVolumeGl::sum_in_flight() {
+  lobes_[current_].bind(0);
+  partials_.bind_storage(10);
+  sum_.bind_storage(11);
+  sum_lobes_.use();
+  glDispatchCompute(64, 1, 1);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_partials_.use();
+  glDispatchCompute(1, 1, 1);
+  readback_.push(sum_);
+}
+
+void PulseVolumeGl::read_out() {
+  radiance_.sh.clear({0.0f, 0.0f, 0.0f, 0.0f});
+  accumulated_[current_].bind(0);
+  radiance_.sh.bind_image(0, GL_READ_WRITE);
+  add_radiance_.use();
+  // gaitatzes2010 accumulates what leaves surfaces; pixels read what arrives there.
+  add_radiance_.set("odd_sign", options_.scheme == Scheme::gaitatzes2010 ? -1.0f : 1.0f);
+  dispatch_cells();
+}
+
+size_t PulseVolumeGl::bytes() const {
+  const size_t texels = options_.sh_order == 1 ? 3 : 7;
+  return 4 * 16 * texels * cell_count(grid_) + radiance_.bytes() + partials_.bytes();
+}
+
+}  // namespace volgi

@@ -1,0 +1,68 @@
+#pragma once
+#include <cstdlib>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+/// Leaves of 8^3 cells by number, z fastest, so that leaves that share most cache lines are neighbours in memory too.
+class LeafNumbers {
+ public:
+  explicit LeafNumbers(glm::ivec3 cells) : blocks_((cells + (kLeafCells - 1)) / kLeafCells) {}
+  int count() const { return blocks_.x * blocks_.y * blocks_.z; }
+  glm::ivec3 blocks() const { return blocks_; }
+  int number(glm::ivec3 block) const { return block.z + blocks_.z * (block.y + blocks_.y * block.x); }
+  glm::ivec3 block(int number) const {
+    const int column = number / blocks_.z;
+    return {column / blocks_.y, column % blocks_.y, number - column * blocks_.z};
+  }
+  /// Leaf across face `face` of leaf `number`; -1 outside the grid.
+  int beside(int number, int face) const;
+
+ private:
+  glm::ivec3 blocks_;
+};
+
+/// Lobes of a volume's cells, sparse: a leaf of 8^3 cells for each block that holds light, [coefficient][band][512]
+/// floats, 64-byte aligned, and a table of leaves by number. Reading a block without light gives zeros.
+class LobeVolume {
+ public:
+  LobeVolume(const LeafNumbers& numbers, int coefficients);
+
+  /// Numbers of the leaves that there are, ascending.
+  std::span<const int> leaves() const { return leaves_; }
+  const float* leaf(int number) const { return table_[size_t(number)]; }
+  float* leaf(int number) { return table_[size_t(number)]; }  // only of leaves(): the others are one leaf of zeros
+  size_t leaf_floats() const { return leaf_floats_; }
+  /// Two states that are larger together are not found in the cache again.
+  static size_t cache_bytes();
+  /// The leaf of zeros.
+  static const float* dark();
+
+  /// These leaves and no others, their lobes unset. @param numbers  ascending.
+  void assign(std::vector<int> numbers);
+  /// Leaves dropped (as flags over leaves()) read as zeros from now on.
+  void drop(std::span<const char> dropped);
+  void swap(LobeVolume& other) noexcept;
+  size_t bytes() const;
+
+ private:
+  struct Free {
+    void operator()(float* p) const { std::free(p); }
+  };
+  using Chunk = std::unique_ptr<float[], Free>;
+  float* slot(size_t index);
+  size_t chunk_bytes() const;
+
+  size_t leaf_floats_;
+  size_t chunk_leaves_;
+  std::vector<Chunk> chunks_;  // kept between passes, filled from the first
+  std::vector<int> leaves_;
+  std::vector<float*> table_;
+};
+
+}  // namespace volgi

@@ -1,0 +1,71 @@
+#include "propagation/side_flux.h"
+
+#include <algorithm>
+
+#include "propagation/side_loops.h"
+#include "voxel/side_search.h"
+
+namespace volgi {
+
+namespace {
+
+/// Where a sample goes: up to three sides, with shares that sum to 1; none when all sides are far.
+struct Target {
+  glm::ivec3 sides{-1};
+  glm::vec3 shares{0.0f};
+};
+
+/// The side of the 5^3 cells around a point that is nearest and faces most alike: by the cosine between the normals
+/// less the distance in cells. -1: there is none.
+int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal) {
+  const glm::vec3 point = shared::cell_from_world(voxels.grid(), world_position);
+  const glm::ivec3 centre(glm::floor(point));
+  const glm::ivec3 first = glm::max(centre - 2, 0);
+  const glm::ivec3 last = glm::min(centre + 2, voxels.grid().cells - 1);
+  int best = -1;
+  float best_score = 0.0f;
+  glm::ivec3 c;
+  for (c.z = first.z; c.z <= last.z; ++c.z) {
+    for (c.y = first.y; c.y <= last.y; ++c.y) {
+      for (c.x = first.x; c.x <= last.x; ++c.x) {
+        const glm::uvec2 own = voxels.cell_sides(c);
+        const int count = int(shared::count_bits(own.y & 63u));
+        const float distance = glm::distance(glm::vec3(c) + 0.5f, point);
+        for (int side = int(own.x); side < int(own.x) + count; ++side) {
+          const float score = glm::dot(voxels.sides()[size_t(side)].normal, normal) - distance;
+          if (best >= 0 && score <= best_score) continue;
+          best = side;
+          best_score = score;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+Target target_of(const VoxelGrid& voxels, const FluxSample& sample) {
+  const SidesOfPoint found = sides_of_point(voxels, sample.position, sample.normal, -1);
+  if (found.weights != glm::vec3(0.0f)) return {found.sides, found.weights};
+  return {{any_side_near(voxels, sample.position, sample.normal), -1, -1}, {1.0f, 0.0f, 0.0f}};
+}
+
+}  // namespace
+
+void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost) {
+  std::vector<Target> targets(samples.size());
+  for_each_side(samples.size(), [&](size_t i) { targets[i] = target_of(voxels, samples[i]); });
+  // Sides may get thousands of samples each: sums are double.
+  std::vector<glm::dvec3> sums(flux.size(), glm::dvec3(0.0));
+  glm::dvec3 found_none(0.0);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (targets[i].shares[k] <= 0.0f) continue;
+      const int side = targets[i].sides[k];
+      (side < 0 ? found_none : sums[size_t(side)]) += double(targets[i].shares[k]) * glm::dvec3(samples[i].flux);
+    }
+  }
+  for_each_side(flux.size(), [&](size_t i) { flux[i] += glm::vec4(sums[i], 0.0f); });
+  lost += glm::vec3(found_none);
+}
+
+}  // namespace volgi

@@ -1,0 +1,89 @@
+// Twin of side_irradiance.comp.glsl and smooth_sides.comp.glsl (docs/theory.md#reconstruction).
+#include <bitset>
+
+#include "propagation/bounces.h"
+#include "propagation/side_loops.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
+
+using Around = std::bitset<27>;  // the 3^3 cells around one
+
+size_t around_index(glm::ivec3 d) { return size_t((d.x + 1) + 3 * (d.y + 1) + 9 * (d.z + 1)); }
+glm::ivec3 around_offset(size_t k) { return glm::ivec3(k % 3, (k / 3) % 3, k / 9) - 1; }
+
+/// Cells around `centre` that three steps lead to without crossing a face that stops everything: a corner of the cube
+/// is three steps away.
+Around reachable_cells(const VoxelGrid& voxels, glm::ivec3 centre) {
+  Around reached, edge;
+  edge.set(around_index(glm::ivec3(0)));
+  for (int step = 0; step < 3; ++step) {
+    reached |= edge;
+    Around next;
+    for (size_t k = 0; k < edge.size(); ++k) {
+      if (!edge[k]) continue;
+      const glm::ivec3 d = around_offset(k);
+      const glm::uvec2 own = voxels.cell_sides(centre + d);
+      for (int face = 0; face < 6; ++face) {
+        const glm::ivec3 to = d + shared::face_step(face);
+        if (glm::any(glm::greaterThan(glm::abs(to), glm::ivec3(1)))) continue;
+        if (!shared::is_opaque(own, face) && shared::cell_inside(voxels.grid(), centre + to))
+          next.set(around_index(to));
+      }
+    }
+    edge = next & ~reached;
+  }
+  return reached | edge;
+}
+
+/// Area-weighted mean of E over sides; `weighted` is E A per side.
+struct Mean {
+  glm::vec3 power{0.0f};
+  float area_m2 = 0.0f;
+  void add(glm::vec3 weighted, float area) {
+    power += weighted;
+    area_m2 += area;
+  }
+  glm::vec4 clamped() const { return glm::vec4(glm::max(power, 0.0f) / area_m2, 1.0f); }
+};
+
+}  // namespace
+
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const Bounces& bounces) {
+  const std::vector<shared::Side>& sides = voxels.sides();
+  const size_t count = sides.size();
+  std::vector<glm::vec3> direct(count), indirect(count);  // E A [W]
+  for_each_side(count, [&](size_t i) {
+    const shared::Side& s = sides[i];
+    const auto power = [&](const glm::vec4& received, const glm::vec4& own) {
+      return s.area_m2 *
+             shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, s.area_m2, s.face_m2);
+    };
+    direct[i] = power(bounces.received_direct()[i], flux.emitted[i]);
+    indirect[i] = power(bounces.received_indirect()[i], flux.punctual[i]);
+  });
+  SideIrradiance mean{std::vector<glm::vec4>(count), std::vector<glm::vec4>(count)};
+  for_each_side(count, [&](size_t i) {
+    const glm::ivec3 centre = shared::cell_coord(voxels.grid(), sides[i].cell);
+    const Around reached = reachable_cells(voxels, centre);
+    Mean first, rest;
+    for (size_t k = 0; k < reached.size(); ++k) {
+      if (!reached[k]) continue;
+      const glm::uvec2 own = voxels.cell_sides(centre + around_offset(k));
+      const size_t last = own.x + shared::count_bits(own.y & 63u);
+      for (size_t s = own.x; s < last; ++s) {
+        if (glm::dot(sides[s].normal, sides[i].normal) < kLikeNormals) continue;
+        first.add(direct[s], sides[s].area_m2);
+        rest.add(indirect[s], sides[s].area_m2);
+      }
+    }
+    mean.direct[i] = first.clamped();
+    mean.indirect[i] = rest.clamped();
+  });
+  return mean;
+}
+
+}  // namespace volgi

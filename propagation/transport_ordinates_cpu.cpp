@@ -1,0 +1,302 @@
+#include "propagation/transport_ordinates_cpu.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+
+#include "voxel/cell_volumes.h"
+
+namespace volgi {
+
+namespace {
+
+using sweep::kBlockCells;
+using sweep::kOctet;
+
+/// Light thins out by powers along axes and would end in denormal numbers, many times slower: they count as zero here.
+class FlushDenormals {
+ public:
+  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | 0x8040u); }  // FTZ | DAZ
+  ~FlushDenormals() { _mm_setcsr(before_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+/// One direction and band in its lane.
+void set_lane(sweep::Constants& c, int lane, const OrdinateSet& set, size_t i, Ordinates rule, float cell_size_m) {
+  const CellTransfer transfer = cell_transfer(rule, set.directions[i]);
+  const glm::vec3 emitted = set.emitted_share(i);
+  const glm::vec3 track = radiance_per_watt(set, i, rule, cell_size_m);
+  for (int a = 0; a < 3; ++a) {
+    for (int out = 0; out < 3; ++out) c.share[a][out][lane] = transfer.share[a][out];
+    c.emitted[a][lane] = emitted[a];
+    c.track[a][lane] = track[a];
+  }
+  const glm::vec3 d = set.directions[i];
+  const float y00 = 0.5f / std::sqrt(glm::pi<float>());
+  const float y1 = std::sqrt(3.0f) * y00;
+  const float sh[4] = {y00, y1 * d.y, y1 * d.z, y1 * d.x};
+  for (int m = 0; m < 4; ++m) c.sh[m][lane] = sh[m];
+}
+
+sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float cell_size_m) {
+  sweep::Constants c;
+  const int directions = int(set.directions.size());
+  while (2 * c.octets + 2 * (c.octets / 3) < directions) ++c.octets;
+  assert(c.octets <= sweep::kMostOctets);
+  const int in_quads = std::min(directions, 2 * c.octets);
+  for (int d = 0; d < in_quads; ++d) {
+    for (int band = 0; band < 3; ++band) set_lane(c, sweep::kQuad * d + band, set, size_t(d), rule, cell_size_m);
+  }
+  // Two directions more in the fourth lanes of three octets, one band each.
+  for (int d = in_quads; d < directions; ++d) {
+    for (int band = 0; band < 3; ++band) {
+      const int octet = (d - in_quads) / 2 * 3 + band;
+      set_lane(c, kOctet * octet + sweep::kQuad * (d & 1) + 3, set, size_t(d), rule, cell_size_m);
+      c.fourth[octet] = band;
+      c.fold[octet][band] = 1.0f;
+    }
+  }
+  return c;
+}
+
+bool any_light(const float* values, size_t count) {
+  for (size_t i = 0; i < count; i += 32) {
+    std::uint32_t bits[32];
+    std::memcpy(bits, values + i, sizeof bits);
+    std::uint32_t any = 0;
+    for (std::uint32_t b : bits) any |= b;
+    if (any != 0) return true;
+  }
+  return false;
+}
+
+/// Sides of a block as the kernels want them; those of a cell follow each other in `side`.
+sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, std::vector<std::uint32_t>& side) {
+  sweep::BlockSides packed{};
+  packed.first_side = std::uint32_t(side.size());
+  const std::int64_t* cells = voxels.leaf(block)->buffer().data();
+  const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels.grid().cells - kBlockCells * block);
+  for (int z = 0; z < extent.z; ++z) {
+    for (int y = 0; y < extent.y; ++y) {
+      for (int x = 0; x < extent.x; ++x) {
+        const glm::uvec2 cell = VoxelGrid::unpack(cells[leaf_offset({x, y, z})]);
+        const std::uint32_t faces = cell.y & 63u;
+        if (faces == 0) continue;
+        const int row = z * kBlockCells + y;
+        packed.cells[row * kBlockCells + x] = sweep::pack_cell(faces, std::uint32_t(side.size()) - packed.first_side);
+        packed.rows[0][row] |= static_cast<unsigned char>(1u << x);
+        packed.rows[1][row] |= static_cast<unsigned char>(1u << (extent.x - 1 - x));
+        for (std::uint32_t i = 0; i < shared::count_bits(faces); ++i) side.push_back(cell.x + i);
+      }
+    }
+  }
+  return packed;
+}
+
+}  // namespace
+
+/// Radiance of the blocks that light reaches, in OpenVDB's leaves.
+struct OrdinatesTransport::RadianceLeaves {
+  using Tree = openvdb::Vec3SGrid::TreeType;
+  using Leaf = Tree::LeafNodeType;
+  using Coefficients = std::array<std::unique_ptr<Leaf>, 4>;
+  std::vector<Coefficients> by_block;
+
+  explicit RadianceLeaves(glm::ivec3 blocks) : by_block(size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z)) {}
+  /// A row of blocks is one thread's: no other one asks for the same block.
+  void attach(sweep::Block& b, glm::ivec3 blocks, glm::ivec3 block) {
+    static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
+    Coefficients& leaves = by_block[size_t(block_index(blocks, block))];
+    for (size_t m = 0; m < 4; ++m) {
+      if (!leaves[m]) {
+        const glm::ivec3 origin = kBlockCells * block;
+        leaves[m] = std::make_unique<Leaf>(openvdb::Coord(origin.x, origin.y, origin.z), openvdb::Vec3s(0.0f), false);
+      }
+      b.radiance[m] = leaves[m]->buffer().data()->asPointer();
+    }
+  }
+  RadianceVolume volume(const Grid& grid) &&;
+};
+
+RadianceVolume OrdinatesTransport::RadianceLeaves::volume(const Grid& grid) && {
+  tbb::parallel_for(size_t(0), by_block.size(), [&](size_t block) {
+    Coefficients& leaves = by_block[block];
+    if (!leaves[0]) return;
+    Leaf::NodeMaskType lit;
+    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) lit.set(i, leaves[0]->getValue(i) != openvdb::Vec3s(0.0f));
+    for (auto& leaf : leaves) leaf->setValueMask(lit);
+  });
+  RadianceVolume volume;
+  for (size_t m = 0; m < 4; ++m) {
+    auto sh = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
+    sh->setName(sh_grid_name(int(m)));
+    sh->setTransform(world_from_index(grid, glm::dvec3(0.0)));
+    for (Coefficients& leaves : by_block) {
+      if (leaves[m] && !leaves[m]->isEmpty()) sh->tree().addLeaf(leaves[m].release());
+    }
+    volume.sh.push_back(sh);
+  }
+  return volume;
+}
+
+OrdinatesTransport::OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels)
+    : voxels_(voxels),
+      choice_(choice),
+      kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
+      constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)) {
+  const glm::ivec3 n = voxels.blocks();
+  for (Flow& flow : flows_) {
+    flow.y_lit.resize(size_t(n.x) * size_t(n.z));
+    flow.z_lit.resize(size_t(n.x) * size_t(n.y));
+    flow.y.resize(flow.y_lit.size() * face_floats());
+    flow.z.resize(flow.z_lit.size() * face_floats());
+  }
+  pack_sides();
+}
+
+void OrdinatesTransport::pack_sides() {
+  const glm::ivec3 n = voxels_.blocks();
+  sides_of_block_.assign(size_t(n.x) * size_t(n.y) * size_t(n.z), -1);
+  side_.reserve(voxels_.side_count());
+  for (glm::ivec3 b(0); b.z < n.z; ++b.z) {
+    for (b.y = 0; b.y < n.y; ++b.y) {
+      for (b.x = 0; b.x < n.x; ++b.x) {
+        if (voxels_.leaf(b) == nullptr) continue;
+        sides_of_block_[size_t(block_index(n, b))] = int(block_sides_.size());
+        block_sides_.push_back(pack_block(voxels_, b, side_));
+      }
+    }
+  }
+  assert(side_.size() == voxels_.side_count());
+  sends_.resize(block_sides_.size());
+  sent_.resize(side_.size());
+  for (size_t i = 0; i < side_.size(); ++i) {
+    sent_[i].w = 1.0f - std::min(voxels_.sides()[side_[i]].coverage, 1.0f);  // constant
+  }
+  arrived_.resize(4 * side_.size());
+}
+
+void OrdinatesTransport::begin(std::span<const glm::vec4> sent) {
+  assert(sent.size() == voxels_.side_count());
+  tbb::parallel_for(size_t(0), block_sides_.size(), [&](size_t b) {
+    const size_t first = block_sides_[b].first_side;
+    const size_t last = b + 1 < block_sides_.size() ? block_sides_[b + 1].first_side : side_.size();
+    bool sends = false;
+    for (size_t i = first; i < last; ++i) {
+      sent_[i] = glm::vec4(glm::vec3(sent[side_[i]]), sent_[i].w);
+      sends = sends || glm::vec3(sent_[i]) != glm::vec3(0.0f);
+    }
+    sends_[b] = sends ? 1 : 0;
+  });
+}
+
+bool OrdinatesTransport::advance(std::span<glm::vec4> received, int /*most_passes*/, const BounceRules& /*rules*/,
+                                 BounceReport& report) {
+  assert(received.size() == voxels_.side_count());
+  // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
+  const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
+  tbb::parallel_for(
+      0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
+    for (size_t i = sides.begin(); i < sides.end(); ++i) {
+      glm::vec4* a = &arrived_[4 * i];
+      glm::vec4& r = received[side_[i]];
+      r = glm::vec4(glm::vec3(r) + (1.0f - sent_[i].w) * glm::vec3((a[0] + a[1]) + (a[2] + a[3])), r.w);
+      std::fill(a, a + 4, glm::vec4(0.0f));
+    }
+  });
+  report.passes += 1;
+  return true;
+}
+
+RadianceVolume OrdinatesTransport::radiance(std::span<const glm::vec4> sent) {
+  begin(sent);
+  RadianceLeaves leaves(voxels_.blocks());
+  // Octants add to the same cells: one after the other.
+  for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, &leaves);
+  std::fill(arrived_.begin(), arrived_.end(), glm::vec4(0.0f));
+  return std::move(leaves).volume(voxels_.grid());
+}
+
+/// Rows of blocks along x, by (y,z) along the flow; those of one diagonal y + z do not depend on each other.
+void OrdinatesTransport::sweep_octant(int octant, bool threaded, RadianceLeaves* leaves) {
+  const glm::ivec3 n = voxels_.blocks();
+  Flow& flow = flows_[size_t(octant)];
+  std::fill(flow.y_lit.begin(), flow.y_lit.end(), static_cast<unsigned char>(0));
+  std::fill(flow.z_lit.begin(), flow.z_lit.end(), static_cast<unsigned char>(0));
+  if (!threaded) {
+    for (int z = 0; z < n.z; ++z) {
+      for (int y = 0; y < n.y; ++y) sweep_row(octant, y, z, leaves);
+    }
+    return;
+  }
+  for (int diagonal = 0; diagonal <= n.y + n.z - 2; ++diagonal) {
+    const int first = std::max(0, diagonal - (n.y - 1));
+    const int last = std::min(n.z - 1, diagonal);
+    tbb::parallel_for(first, last + 1, [&](int z) { sweep_row(octant, diagonal - z, z, leaves); });
+  }
+}
+
+void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* leaves) {
+  const FlushDenormals flush;
+  const glm::ivec3 n = voxels_.blocks();
+  const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
+  const size_t face = face_floats();
+  Flow& flow = flows_[size_t(octant)];
+  alignas(64) float x_carried[sweep::kBlockFace * sweep::kMostLanes];
+  unsigned char x_lit = 0;
+  const sweep::Kernel kernel =
+      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);
+  for (int x = 0; x < n.x; ++x) {
+    const glm::ivec3 along(x, y, z);
+    const glm::ivec3 block = positive * along + (1 - positive) * (n - 1 - along);
+    const int sides = sides_of_block_[size_t(block_index(n, block))];
+    const size_t by_y = size_t(x + n.x * z), by_z = size_t(x + n.x * y);
+    unsigned char& y_lit = flow.y_lit[by_y];
+    unsigned char& z_lit = flow.z_lit[by_z];
+    if (x_lit == 0 && y_lit == 0 && z_lit == 0 && (sides < 0 || sends_[size_t(sides)] == 0)) continue;
+    const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels_.grid().cells - kBlockCells * block);
+    sweep::Block b{};
+    b.x = x_carried;
+    b.y = flow.y.data() + by_y * face;
+    b.z = flow.z.data() + by_z * face;
+    if (x_lit == 0) std::fill(b.x, b.x + face, 0.0f);
+    if (y_lit == 0) std::fill(b.y, b.y + face, 0.0f);
+    if (z_lit == 0) std::fill(b.z, b.z + face, 0.0f);
+    for (int a = 0; a < 3; ++a) b.extent[a] = extent[a];
+    b.octant = octant;
+    if (sides >= 0) {
+      const size_t first = block_sides_[size_t(sides)].first_side;
+      b.sides = &block_sides_[size_t(sides)];
+      b.sent = &sent_[first].x;
+      b.arrived = &arrived_[4 * first].x;
+    }
+    if (leaves != nullptr) leaves->attach(b, n, block);
+    kernel(constants_, b);
+    x_lit = any_light(b.x, face) ? 1 : 0;
+    y_lit = any_light(b.y, face) ? 1 : 0;
+    z_lit = any_light(b.z, face) ? 1 : 0;
+  }
+}
+
+size_t OrdinatesTransport::bytes() const {
+  size_t bytes = sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + sides_of_block_.size() * 4 +
+                 side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4));
+  for (const Flow& flow : flows_) {
+    bytes += (flow.y.size() + flow.z.size()) * sizeof(float) + flow.y_lit.size() + flow.z_lit.size();
+  }
+  return bytes;
+}
+
+}  // namespace volgi

@@ -1,0 +1,67 @@
+#pragma once
+#include <tbb/cache_aligned_allocator.h>
+
+#include <array>
+#include <vector>
+
+#include "propagation/ordinates.h"
+#include "propagation/sweep_kernel.h"
+#include "propagation/transport.h"
+
+namespace volgi {
+
+/// `ordinates`: the discrete-ordinates (S_N) method of neutron transport, step or step-characteristic (SC1) rule. One
+/// sweep per octant, upwind cells first, solves an order exactly: void, blocked and partly transmitting faces
+/// (docs/theory.md#ordinates). Linear, reciprocal, never negative; power is kept to rounding.
+///
+/// Cells are taken in blocks of 8^3, the leaves of the voxels. A block that no light enters and that no side sends from
+/// is skipped; rows of cells without sides run through a loop of three (step) or nine (SC1) multiplications a lane.
+/// Values below 2^-126 W count as zero. Cost of an order: one visit of each cell that light reaches per octant. Threads
+/// take octants, and diagonals of rows of blocks where that is not even; every sum has a fixed order.
+/// Memory: two planes of the grid per octant (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a
+/// few to fill registers), 84 bytes a side, 2.2 KiB a block with sides. Twin: transport_ordinates_gl.cpp.
+class OrdinatesTransport : public Transport {
+ public:
+  /// @param kernels  null: the fastest that this machine can run.
+  /// @throws Error(usage) as ordinate_set.
+  OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
+
+  void begin(std::span<const glm::vec4> sent) override;
+  bool advance(std::span<glm::vec4> received, int most_passes, const BounceRules& rules, BounceReport& report) override;
+  bool iterative() const override { return false; }
+  bool linear() const override { return true; }
+  /// One more sweep, octant after octant. Cells that no light reached are inactive.
+  RadianceVolume radiance(std::span<const glm::vec4> sent) override;
+  size_t bytes() const override;
+  OrdinateChoice choice() const { return choice_; }
+
+ private:
+  using Floats = std::vector<float, tbb::cache_aligned_allocator<float>>;
+  /// Light between blocks of one octant, by block along the flow: through y by (x,z), through z by (x,y). That through
+  /// x stays inside a row of blocks. `lit` says where there is any; elsewhere the values are of no meaning.
+  struct Flow {
+    Floats y, z;
+    std::vector<unsigned char> y_lit, z_lit;
+  };
+  struct RadianceLeaves;
+
+  void pack_sides();
+  void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
+  void sweep_row(int octant, int y, int z, RadianceLeaves* leaves);
+  size_t face_floats() const { return size_t(sweep::kBlockFace * constants_.octets * sweep::kOctet); }
+
+  const VoxelGrid& voxels_;
+  OrdinateChoice choice_;
+  sweep::Kernels kernels_;
+  sweep::Constants constants_;
+  std::array<Flow, 8> flows_;
+  // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
+  std::vector<sweep::BlockSides> block_sides_;
+  std::vector<int> sides_of_block_;   // index into block_sides_, or -1
+  std::vector<unsigned char> sends_;  // by block_sides_: whether any side of the block sends
+  std::vector<std::uint32_t> side_;
+  std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> sent_;     // w: 1 - tau
+  std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> arrived_;  // 4 a side, zero between sweeps
+};
+
+}  // namespace volgi

@@ -1,0 +1,25 @@
+#version 450 core
+// Sides as the sweep reads them (sweep.comp.glsl), through textures and in one read each: for every cell its first side
+// and which faces have one, for every side what it sends and the share of light that its face lets through.
+#include "shared/grid.shared.h"
+#include "shared/side.shared.h"
+#include "propagation/side_texel.glsl"
+
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+layout(binding = 0, r32ui) uniform restrict writeonly uimage3D cell_word;    // (first side << 6) | faces
+layout(binding = 1, rgba32f) uniform restrict writeonly image2D side_light;  // rgb [W], a: 1 - tau
+layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
+layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+layout(std430, binding = 7) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i < grid.cells.x * grid.cells.y * grid.cells.z) {
+    uvec2 own_sides = cell_sides[i];
+    imageStore(cell_word, cell_coord(grid, i), uvec4((own_sides.x << 6) | (own_sides.y & 63u), 0u, 0u, 0u));
+  }
+  if (i >= int(side_count)) return;
+  imageStore(side_light, side_texel(i), vec4(sent[i].rgb, 1.0 - sides[i].coverage));
+}

@@ -1,0 +1,209 @@
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <memory>
+
+#include "voxel/slice_raster.h"
+
+namespace volgi::slicing {
+
+namespace {
+
+constexpr int kBlockColumns = kFine * kLeafCells;
+constexpr int kBlockCells = kLeafCells * kLeafCells * kLeafCells;
+constexpr std::uint64_t kOffCentre = std::uint64_t(1) << 63;
+constexpr std::uint64_t kNoKey = ~std::uint64_t(0);
+constexpr int kOffsetStep[3] = {kLeafCells * kLeafCells, kLeafCells, 1};  // leaf_offset
+
+/// Cell and sub-cell of the fine columns of a block.
+struct FineTable {
+  std::uint8_t cell[kBlockColumns], sub[kBlockColumns];
+  constexpr FineTable() : cell{}, sub{} {
+    for (int i = 0; i < kBlockColumns; ++i) {
+      cell[i] = std::uint8_t(i / kFine);
+      sub[i] = std::uint8_t(i % kFine);
+    }
+  }
+};
+constexpr FineTable kTable;
+
+/// Keys order the surfaces of a face: off-centre (63), depth (36 ... 62), sub-column (32 ... 35), triangle. Their depth
+/// is as coarse as the 32-bit keys of slice.frag.glsl have it, so that ties are the same.
+struct MarkedFace {
+  std::uint32_t fine_blocked = 0;
+  std::uint32_t alpha_sum = 0;
+  std::uint64_t low = kNoKey;
+  std::uint64_t high = kNoKey;
+};
+
+struct Scratch {
+  std::array<std::array<MarkedFace, kBlockCells>, 3> faces;
+  std::array<BlockMask, 3> active{};
+  // Of the triangle at hand, by cell: columns of the block fastest, from one cell below the block on.
+  std::array<std::uint32_t, (kLeafCells + 2) * kLeafCells * kLeafCells> amount{};
+  std::array<float, (kLeafCells + 2) * kLeafCells * kLeafCells> depth;
+  std::vector<std::uint16_t> amounts_touched;
+};
+
+class BlockMarker {
+ public:
+  BlockMarker(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
+      : s_(s), first_cell_(s.block_cell(block)), scratch_(scratch) {
+    const int triangle_bits = std::max(8, int(std::bit_width(s.triangles.size())));
+    depth_max_ = (1u << (27 - triangle_bits)) - 1;
+    for (int axis = 0; axis < 3; ++axis) windows_[axis] = whole_window(axis);
+  }
+
+  void add(std::uint32_t index) {
+    const SliceTriangle& t = s_.triangles[index];
+    const FineBox box = fine_box(t);
+    Window windows[3] = {windows_[0], windows_[1], windows_[2]};
+    const bool meets[3] = {cut(windows[0], box, 0), cut(windows[1], box, 1), cut(windows[2], box, 2)};
+    if (!meets[0] && !meets[1] && !meets[2]) return;
+    const Long3 n = plane_normal(t);
+    const auto slice_if = [&](auto opaque, auto passing, int axis) {
+      if (meets[axis] && n[size_t(axis)] != 0) (this->*(t.may_pass ? passing : opaque))(t, index, n, windows[axis]);
+    };
+    slice_if(&BlockMarker::slice<0, false>, &BlockMarker::slice<0, true>, 0);
+    slice_if(&BlockMarker::slice<1, false>, &BlockMarker::slice<1, true>, 1);
+    slice_if(&BlockMarker::slice<2, false>, &BlockMarker::slice<2, true>, 2);
+  }
+
+  std::unique_ptr<BlockFaces> collect();
+
+ private:
+  template <int axis, bool may_pass>
+  void slice(const SliceTriangle& t, std::uint32_t index, const Long3& n, const Window& window);
+  Window whole_window(int axis) const;
+  void mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub, std::uint32_t triangle) const;
+  void count_area(std::uint32_t triangle, int axis);
+
+  const SlicedScene& s_;
+  glm::ivec3 first_cell_;
+  Scratch& scratch_;
+  std::uint32_t depth_max_;
+  Window windows_[3];
+  std::vector<AreaRecord> areas_;
+};
+
+Window BlockMarker::whole_window(int axis) const {
+  const int b = shared::axis_b(axis), c = shared::axis_c(axis);
+  const auto last_cell = [&](int a) { return std::min(first_cell_[a] + kLeafCells, s_.grid.cells[a]) - 1; };
+  const int last_face = std::min(first_cell_[axis] + kLeafCells - 1, s_.grid.cells[axis]);
+  // Segment q of a column lies below node q - 1; face i has the segments 3i ... 3i + 2.
+  return {kFine * first_cell_[b],           kFine * last_cell(b) + kFine - 1, kFine * first_cell_[c],
+          kFine * last_cell(c) + kFine - 1, kFine * first_cell_[axis] - 1,    kFine * last_face + 1};
+}
+
+void BlockMarker::mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub, std::uint32_t triangle) const {
+  const float inside = glm::clamp(depth - float(i) + 0.5f, 0.0f, 1.0f);
+  const std::uint32_t quantised = std::min(std::uint32_t(inside * float(depth_max_)), depth_max_ - 1);
+  const std::uint64_t rest = (centre ? 0 : kOffCentre) | std::uint64_t(sub) << 32 | triangle;
+  face.low = std::min(face.low, rest | std::uint64_t(quantised) << 36);
+  face.high = std::min(face.high, rest | std::uint64_t(depth_max_ - 1 - quantised) << 36);
+}
+
+template <int axis, bool may_pass>
+void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3& n, const Window& window) {
+  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
+  const int fine_b = kFine * first_cell_[b], fine_c = kFine * first_cell_[c];
+  const int first_segment = kFine * first_cell_[axis];
+  const bool counts_area = axis == t.nearest_axis && t.normal != glm::vec3(0.0f);
+  MarkedFace* const faces = scratch_.faces[size_t(axis)].data();
+  const TriangleSlice<axis> triangle(t, n);
+  triangle.fragments(window, [&](int column_b, int column_c, int k, std::int64_t numerator) {
+    const size_t at_b = size_t(column_b - fine_b), at_c = size_t(column_c - fine_c);
+    const size_t at_segment = size_t(k + 1 - first_segment);
+    const int sub = kTable.sub[at_b] + kFine * kTable.sub[at_c];
+    const bool centre = sub == 4;
+    float stopped = 1.0f;
+    if constexpr (may_pass) {
+      stopped = material_at(s_, t, n, axis, column_b, column_c).stopped;
+      if (!(stopped > 0.0f)) return;
+    }
+    const int cell_b = kTable.cell[at_b], cell_c = kTable.cell[at_c], local = kTable.cell[at_segment];
+    MarkedFace& face = faces[cell_b * kOffsetStep[b] + cell_c * kOffsetStep[c] + local * kOffsetStep[axis]];
+    if (!may_pass || stopped >= kOpaque) {
+      face.fine_blocked |= 1u << (9 * kTable.sub[at_segment] + sub);
+    } else if (centre) {
+      face.alpha_sum += std::max(std::uint32_t(-std::log(1.0f - stopped) * 65536.0f + 0.5f), 1u);
+    }
+    const int offset = int(&face - faces);
+    float depth = -1.0f;  // not known
+    if (centre || face.low >= kOffCentre) {
+      if (face.low == kNoKey) scratch_.active[axis][size_t(offset >> 6)] |= std::uint64_t(1) << (offset & 63);
+      depth = float(triangle.depth(numerator));
+      mark_keys(face, depth, first_cell_[axis] + local, centre, sub, index);
+    }
+    if (!counts_area) return;
+    // The cell that the depth lies in: only the segment across a cell's lower face has a bit of two.
+    int layer = at_segment == 0 ? 0 : kTable.cell[at_segment - 1] + 1;
+    if (kTable.sub[at_segment] == 1) {
+      if (depth == -1.0f) depth = float(triangle.depth(numerator));
+      layer = int(depth + 1.0f) - first_cell_[axis];  // floor(depth) + 1: depth is at least -1/2
+    }
+    const auto entry = size_t(cell_b + kLeafCells * (cell_c + kLeafCells * layer));
+    std::uint32_t& amount = scratch_.amount[entry];
+    if (amount == 0) {
+      scratch_.amounts_touched.push_back(std::uint16_t(entry));
+      scratch_.depth[entry] = depth == -1.0f ? float(triangle.depth(numerator)) : depth;
+    }
+    amount += (std::uint32_t(stopped * kStoppedUnit + 0.5f) << kStoppedShift) + (1u << sub);
+  });
+  if (counts_area) count_area(index, axis);
+}
+
+/// Turns what was counted of one triangle into records.
+void BlockMarker::count_area(std::uint32_t triangle, int axis) {
+  for (std::uint16_t entry : scratch_.amounts_touched) {
+    glm::ivec3 cell = first_cell_;
+    cell[shared::axis_b(axis)] += entry % kLeafCells;
+    cell[shared::axis_c(axis)] += entry / kLeafCells % kLeafCells;
+    cell[axis] += entry / (kLeafCells * kLeafCells) - 1;
+    areas_.push_back({triangle, pack_cell(cell), scratch_.amount[entry], scratch_.depth[entry]});
+    scratch_.amount[entry] = 0;
+  }
+  scratch_.amounts_touched.clear();
+}
+
+std::unique_ptr<BlockFaces> BlockMarker::collect() {
+  size_t count = 0;
+  for (const BlockMask& mask : scratch_.active) {
+    for (std::uint64_t word : mask) count += size_t(std::popcount(word));
+  }
+  if (count == 0) return nullptr;
+  auto out = std::make_unique<BlockFaces>();
+  out->faces.reserve(count);
+  out->areas = std::move(areas_);
+  out->active = scratch_.active;
+  scratch_.active = {};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (size_t word = 0; word < 8; ++word) {
+      out->rank[axis][word] = std::uint16_t(out->faces.size());
+      for (std::uint64_t rest = out->active[axis][word]; rest != 0; rest &= rest - 1) {
+        MarkedFace& f = scratch_.faces[axis][64 * word + size_t(std::countr_zero(rest))];
+        out->faces.push_back({f.fine_blocked, f.alpha_sum, std::uint32_t(f.low), std::uint32_t(f.high),
+                              std::uint8_t((f.low >> 32) & 15), std::uint8_t((f.high >> 32) & 15)});
+        f = MarkedFace{};
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+BlockTable mark_faces(const SlicedScene& s) {
+  BlockTable table(s.first.empty() ? 0 : s.first.size() - 1);
+  tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratch([] { return std::make_unique<Scratch>(); });
+  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
+    const std::uint32_t block = s.occupied[i];
+    BlockMarker marker(s, block, *scratch.local());
+    for (std::uint32_t k = s.first[block]; k < s.first[block + 1]; ++k) marker.add(s.binned[k]);
+    table[block] = marker.collect();
+  });
+  return table;
+}
+
+}  // namespace volgi::slicing

@@ -1,0 +1,207 @@
+#include <tbb/parallel_for.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "voxel/slice_internal.h"
+
+namespace volgi::slicing {
+
+namespace {
+
+constexpr std::uint64_t kLastOfRow = 0x0101010101010101u;  // bit 8y
+
+/// By face of the cells of one block: which have sides, and which stop everything.
+struct CellFaces {
+  std::array<BlockMask, 6> sided{};
+  std::array<BlockMask, 6> opaque{};
+};
+
+/// Lower faces of the next cell along the axis, as upper faces of these.
+BlockMask shifted_down(const BlockMask& own, const BlockMask& next, int axis) {
+  BlockMask out;
+  for (size_t x = 0; x < 8; ++x) {
+    const std::uint64_t word = axis == 0 ? 0 : own[x], after = axis == 0 ? 0 : next[x];
+    if (axis == 0) out[x] = x < 7 ? own[x + 1] : next[0];
+    if (axis == 1) out[x] = word >> 8 | after << 56;
+    if (axis == 2) out[x] = (word >> 1 & ~(kLastOfRow << 7)) | (after & kLastOfRow) << 7;
+  }
+  return out;
+}
+
+BlockMask inside_mask(const Grid& grid, glm::ivec3 first_cell) {
+  const glm::ivec3 count = glm::clamp(grid.cells - first_cell, 0, kLeafCells);
+  const std::uint64_t row = (std::uint64_t(1) << count.z) - 1;
+  BlockMask out{};
+  for (size_t x = 0; x < size_t(count.x); ++x) {
+    for (int y = 0; y < count.y; ++y) out[x] |= row << (8 * y);
+  }
+  return out;
+}
+
+CellFaces cell_faces(const SlicedScene& s, const BlockTable& table, glm::ivec3 block) {
+  static const BlockFaces kNone{};
+  const auto faces_of = [&](glm::ivec3 at) -> const BlockFaces& {
+    const auto& entry = table[size_t(block_index(s.blocks, at))];
+    return entry ? *entry : kNone;
+  };
+  const BlockMask inside = inside_mask(s.grid, kLeafCells * block);
+  CellFaces out;
+  const BlockFaces& own = faces_of(block);
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t a = size_t(axis);
+    glm::ivec3 above = block;
+    ++above[axis];
+    const BlockFaces& next = above[axis] < s.blocks[axis] ? faces_of(above) : kNone;
+    out.sided[2 * a] = own.sided[a];
+    out.opaque[2 * a] = own.opaque[a];
+    out.sided[2 * a + 1] = shifted_down(own.sided[a], next.sided[a], axis);
+    out.opaque[2 * a + 1] = shifted_down(own.opaque[a], next.opaque[a], axis);
+  }
+  for (auto& mask : out.sided) {
+    for (size_t x = 0; x < 8; ++x) mask[x] &= inside[x];
+  }
+  return out;
+}
+
+/// Fills the leaf's cells; sides are counted from `first`.
+void fill_leaf(const CellFaces& faces, std::uint32_t first, VoxelGrid::Leaf& leaf) {
+  std::int64_t* const cells = leaf.buffer().data();
+  for (size_t x = 0; x < 8; ++x) {
+    std::uint64_t any = 0;
+    for (const BlockMask& mask : faces.sided) any |= mask[x];
+    leaf.getValueMask().getWord<std::uint64_t>(openvdb::Index(x)) = any;
+    for (; any != 0; any &= any - 1) {
+      const int bit = std::countr_zero(any);
+      std::uint32_t bits = 0;
+      for (size_t face = 0; face < 6; ++face) {
+        bits |= std::uint32_t(faces.sided[face][x] >> bit & 1u) << face;
+        bits |= std::uint32_t(faces.opaque[face][x] >> bit & 1u) << (8 + face);
+      }
+      bits &= (bits & 63u) | (bits & 63u) << 8;
+      cells[64 * x + size_t(bit)] = VoxelGrid::pack({first, bits});
+      first += shared::count_bits(bits & 63u);
+    }
+  }
+}
+
+/// Writes the sides of a block's faces.
+class SideWriter {
+ public:
+  SideWriter(const SlicedScene& s, const VoxelGrid& voxels, shared::Side* sides)
+      : s_(s), voxels_(voxels), sides_(sides) {}
+
+  void write(const FaceRecord& record, float coverage, int axis, glm::ivec3 face_cell) const {
+    glm::ivec3 below = face_cell;
+    --below[axis];
+    const Seen low = surface(record.low_triangle, record.low_sub, axis, face_cell);
+    const bool same = record.low_triangle == record.high_triangle && record.low_sub == record.high_sub;
+    if (below[axis] >= 0) write_side(low, below, 2 * axis + 1, coverage);
+    if (face_cell[axis] >= s_.grid.cells[axis]) return;
+    const Seen high = same ? low : surface(record.high_triangle, record.high_sub, axis, face_cell);
+    write_side(high, face_cell, 2 * axis, coverage);
+  }
+
+ private:
+  struct Seen {
+    glm::vec3 normal, albedo, emission;
+    float depth;
+    bool double_sided;
+  };
+
+  Seen surface(std::uint32_t triangle, int sub, int axis, glm::ivec3 face_cell) const {
+    const SliceTriangle& t = s_.triangles[triangle];
+    const Long3 n = plane_normal(t);
+    const int b = shared::axis_b(axis), c = shared::axis_c(axis);
+    Seen out;
+    // Rounding may tilt what the axis runs along to the other side.
+    out.normal = t.normal;
+    if (!(t.normal[axis] * float(n[size_t(axis)]) > 0.0f)) {
+      out.normal = glm::vec3(glm::normalize(glm::dvec3(double(n[0]), double(n[1]), double(n[2]))));
+    }
+    const SlicedMaterial material =
+        material_at(s_, t, n, axis, kFine * face_cell[b] + sub % kFine, kFine * face_cell[c] + sub / kFine);
+    out.albedo = material.albedo;
+    out.emission = material.emission;
+    out.double_sided = s_.material(t).double_sided;
+    const double depth =
+        plane_depth(t, n, axis, node_position(kFine * face_cell[b] + 1), node_position(kFine * face_cell[c] + 1));
+    out.depth = glm::clamp(float(depth), float(face_cell[axis]) - 0.5f, float(face_cell[axis]) + 0.5f);
+    return out;
+  }
+
+  void write_side(const Seen& seen, glm::ivec3 cell, int face, float coverage) const {
+    const float h = s_.grid.cell_size_m;
+    shared::Side side;
+    // The cell looks along +face at the surface.
+    const bool front = seen.normal[shared::face_axis(face)] * float(shared::face_sign(face)) < 0.0f;
+    side.normal = front ? seen.normal : -seen.normal;
+    side.coverage = coverage;
+    side.albedo = seen.albedo;
+    side.area_m2 = 0.0f;  // until it is counted
+    side.radiosity = front || seen.double_sided ? glm::pi<float>() * seen.emission : glm::vec3(0.0f);
+    side.face_m2 = coverage * h * h;
+    side.cell = shared::cell_index(s_.grid, cell);
+    side.face = face;
+    side.depth = seen.depth;
+    side.front = front ? 1 : 0;
+    sides_[shared::side_index(voxels_.cell_sides(cell), face)] = side;
+  }
+
+  const SlicedScene& s_;
+  const VoxelGrid& voxels_;
+  shared::Side* sides_;
+};
+
+}  // namespace
+
+VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table) {
+  const glm::ivec3 blocks = leaf_blocks(s.grid);
+  const size_t count = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
+  const auto block_at = [&](size_t i) {
+    const int row = int(i) / blocks.x;
+    return glm::ivec3(int(i) - row * blocks.x, row % blocks.y, row / blocks.y);
+  };
+  std::vector<CellFaces> faces;
+  std::vector<std::uint32_t> first, block_of;
+  std::uint32_t sum = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const CellFaces f = cell_faces(s, table, block_at(i));
+    std::uint32_t sides = 0;
+    for (const BlockMask& mask : f.sided) {
+      for (std::uint64_t word : mask) sides += std::uint32_t(std::popcount(word));
+    }
+    if (sides == 0) continue;
+    faces.push_back(f);
+    first.push_back(sum);
+    block_of.push_back(std::uint32_t(i));
+    sum += sides;
+  }
+  std::vector<VoxelGrid::Leaf*> leaves(count, nullptr);
+  tbb::parallel_for(size_t(0), faces.size(), [&](size_t i) {
+    const glm::ivec3 cell = kLeafCells * block_at(block_of[i]);
+    auto* leaf = new VoxelGrid::Leaf(openvdb::Coord(cell.x, cell.y, cell.z), 0);
+    fill_leaf(faces[i], first[i], *leaf);
+    leaves[block_of[i]] = leaf;
+  });
+  VoxelGrid voxels(s.grid, std::vector<shared::Side>(sum), leaves);
+  const SideWriter writer(s, voxels, voxels.mutable_sides().data());
+  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
+    const BlockFaces* block = table[s.occupied[i]].get();
+    if (block == nullptr) return;
+    const glm::ivec3 first_cell = s.block_cell(s.occupied[i]);
+    size_t face = 0;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      for (size_t word = 0; word < 8; ++word) {
+        for (std::uint64_t rest = block->active[axis][word]; rest != 0; rest &= rest - 1, ++face) {
+          if (!(block->coverage[face] > 0.0f)) continue;
+          const int bit = std::countr_zero(rest);
+          writer.write(block->faces[face], block->coverage[face], int(axis),
+                       first_cell + glm::ivec3(int(word), bit >> 3, bit & 7));
+        }
+      }
+    }
+  });
+  return voxels;
+}
+
+}  // namespace volgi::slicing
