@@ -115,6 +115,7 @@ void compare_voxels(const VoxelGrid& gpu, const VoxelGrid& cpu, std::vector<Cros
   rows.push_back(compare_sides(gpu, cpu, "side area", "h^2", [&](const Side& a, const Side& b) {
     return std::abs(double(a.area_m2) - double(b.area_m2)) / h2;
   }));
+  rows.back().ties = true;
   double brightest = 1e-30;
   for (const Side& s : gpu.sides()) brightest = std::max(brightest, largest_component(s.radiosity));
   rows.push_back(compare_sides(gpu, cpu, "side emission", "largest", [&](const Side& a, const Side& b) {

@@ -20,13 +20,13 @@ bool behind(const Side& side, glm::ivec3 cell, glm::vec3 point) {
   return glm::dot(side.normal, point - on_surface) < 0.0f;
 }
 
-/// Of the sides that `cell` has, one that the point lies behind; null if there is none. What passes half of the light
-/// is no wall.
-const Side* wall_before(const VoxelGrid& voxels, glm::ivec3 cell, glm::vec3 point) {
+/// Of the sides that `cell` has, but for `except`, one that the point lies behind; null if there is none. What lets
+/// half of the light through is no wall.
+const Side* wall_before(const VoxelGrid& voxels, glm::ivec3 cell, glm::vec3 point, const Side* except = nullptr) {
   const glm::uvec2 own = voxels.cell_sides(cell);
   for (std::uint32_t i = 0; i < shared::count_bits(own.y & 63u); ++i) {
     const Side& side = voxels.sides()[own.x + i];
-    if (side.coverage > 0.5f && behind(side, cell, point)) return &side;
+    if (side.coverage > 0.5f && &side != except && behind(side, cell, point)) return &side;
   }
   return nullptr;
 }

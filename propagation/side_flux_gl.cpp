@@ -47,8 +47,8 @@ void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces,
-                                 gl::PassTimer& timer) {
+void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces, gl::PassTimer& timer,
+                                 bool apart) {
   if (pieces.empty()) return;
   auto scope = timer.scope("propagation/inject_emitters");
   std::vector<glm::vec4> packed;
@@ -66,7 +66,7 @@ void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<Fl
   inject_emitters_.use();
   inject_emitters_.set("piece_count", int(pieces.size()));
   gl::dispatch({int(pieces.size()), 1, 1}, {64, 1, 1});
-  collect(voxels, emitted_);
+  collect(voxels, apart ? emitted_ : punctual_);
 }
 
 glm::vec3 SideFluxGl::lost() const { return glm::vec3(lost_.download<glm::vec4>(1)[0]); }

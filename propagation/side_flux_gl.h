@@ -21,8 +21,10 @@ class SideFluxGl {
   /// `source_power` [W] per band. Then dispatch, then collect() into the buffer that the source belongs to.
   void begin_source(const VoxelGridGl& voxels, const gl::Program& program, float source_power);
   void collect(const VoxelGridGl& voxels, const gl::Buffer& into);
-  /// Emissive surfaces (voxel/emitter_pieces.h), timer "propagation/inject_emitters".
-  void inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces, gl::PassTimer& timer);
+  /// Emissive surfaces (voxel/emitter_pieces.h), timer "propagation/inject_emitters". @param apart  kept in emitted();
+  /// else with the punctual light, for schemes that cannot tell them apart.
+  void inject_emitters(const VoxelGridGl& voxels, const std::vector<FluxSample>& pieces, gl::PassTimer& timer,
+                       bool apart = true);
 
   const gl::Buffer& emitted() const { return emitted_; }    // emission: its first arrival is direct light
   const gl::Buffer& punctual() const { return punctual_; }  // reflected light of punctual sources

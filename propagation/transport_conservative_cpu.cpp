@@ -200,10 +200,12 @@ RadianceVolume ConservativeTransport::radiance(std::span<const glm::vec4> sent) 
   std::vector<glm::vec4> ignored(voxels_.side_count(), glm::vec4(0.0f));
   BounceRules rules;
   BounceReport report;
+  std::unique_ptr<CoarsePart> coarse = std::move(coarse_);  // light that is carried coarsely would be missing
   begin(sent);
   do {
     sum.add(lobes(), kernels_);
   } while (!advance(ignored, 1, rules, report));
+  coarse_ = std::move(coarse);
   return sum.radiance(voxels_.grid());
 }
 

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/surface.h"
 #include "core/visibility/light_flux.h"
+#include "propagation/ordinates.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -73,6 +74,8 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
       options_(options),
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
       rules_(bounce_rules(options, largest_albedo(scene))) {
+  if (options.scheme.scheme == Scheme::ordinates)
+    ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   const size_t expected = bytes_expected_cpu(scene, grid_, options.scheme);
   if (options.memory_limit && expected > *options.memory_limit) {
     throw Error(
@@ -106,7 +109,12 @@ void VolumeCpu::voxelize() {
     cells_ = cell_volumes_cpu(scene_, grid_);
     pulse_ = std::make_unique<PulseVolume>(voxels_, cells_, options_.scheme);
   } else {
-    bounces_ = std::make_unique<Bounces>(make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr));
+    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr);
+    if (bounces_) {
+      bounces_->set_transport(std::move(transport));
+    } else {
+      bounces_ = std::make_unique<Bounces>(std::move(transport));
+    }
   }
 }
 
@@ -117,7 +125,8 @@ void VolumeCpu::light_in() {
   const std::vector<FluxSample> pieces = emitter_pieces(scene_, grid_);
   emits_ = !pieces.empty();
   deposit(voxels_, pieces, flux_.emitted, flux_.lost);
-  if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_), 0.5f * grid_.cell_size_m), flux_.punctual, flux_.lost);
+  if (embree_)
+    deposit(voxels_, light_flux(*embree_, light_texels(grid_), 0.5f * grid_.cell_size_m), flux_.punctual, flux_.lost);
 }
 
 void VolumeCpu::propagate() {

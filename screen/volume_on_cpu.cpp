@@ -1,5 +1,7 @@
+#include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/frame_volume.h"
+#include "screen/radiance_gather.h"
 #include "screen/volume_gather.h"
 #include "voxel/voxel_grid_gl.h"
 
@@ -68,10 +70,85 @@ class SidesOnCpu : public FrameVolume {
   VolumeGather gather_;
 };
 
+/// A volume of values by cell as a texture of `layers` volumes stacked in z.
+void upload_cells(const openvdb::Vec3SGrid& from, const openvdb::FloatGrid* fourth, const Grid& grid, int layer,
+                  const gl::Texture& into) {
+  std::vector<glm::vec4> texels(cell_count(grid), glm::vec4(0.0f));
+  for (auto value = from.cbeginValueOn(); value; ++value) {
+    const openvdb::Coord c = value.getCoord();
+    const glm::ivec3 cell(c.x(), c.y(), c.z());
+    if (!shared::cell_inside(grid, cell)) continue;
+    const openvdb::Vec3s v = *value;
+    const float w = fourth != nullptr ? fourth->tree().getValue(c) : 0.0f;
+    texels[size_t(shared::cell_index(grid, cell))] = {v.x(), v.y(), v.z(), w};
+  }
+  glTextureSubImage3D(into.id(), 0, 0, 0, layer * grid.cells.z, grid.cells.x, grid.cells.y, grid.cells.z, GL_RGBA,
+                      GL_FLOAT, texels.data());
+}
+
+/// The papers' schemes: spherical harmonics are uploaded.
+class PulseOnCpu : public FrameVolume {
+ public:
+  PulseOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+      : options_(options),
+        volume_(scene, options),
+        radiance_(volume_.grid(), options.scheme.sh_order == 2 ? 9 : 4),
+        normal_occupancy_(gl::Texture::make_3d(GL_RGBA32F, volume_.grid().cells)),
+        gather_(size, options.scheme.sh_order) {}
+
+  void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
+           const Camera& /*camera*/, gl::PassTimer& timer) override {
+    {
+      auto scope = timer.scope("voxel/voxelize_cpu");
+      volume_.voxelize();
+    }
+    {
+      auto scope = timer.scope("propagation/light_in_cpu");
+      volume_.light_in();
+    }
+    {
+      auto scope = timer.scope("propagation/propagate_cpu");
+      volume_.propagate();
+    }
+    {
+      auto scope = timer.scope("screen/upload_volume");
+      const RadianceVolume radiance = volume_.radiance();
+      for (size_t k = 0; k < radiance.sh.size(); ++k)
+        upload_cells(*radiance.sh[k], nullptr, volume_.grid(), int(k), radiance_.sh);
+      upload_cells(*volume_.cells().normal, volume_.cells().occupancy.get(), volume_.grid(), 0, normal_occupancy_);
+      upload(volume_.voxels(), voxels_);
+    }
+    const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
+    gather_.run(gbuffer, voxels_, radiance_, occupied_only ? &normal_occupancy_ : nullptr, timer);
+  }
+  const gl::Texture& direct() const override { return gather_.direct(); }
+  const gl::Texture& indirect() const override { return gather_.indirect(); }
+
+  VolumeReport report() const override {
+    VolumeReport r;
+    r.grid = volume_.grid().cells;
+    r.sides = volume_.voxels().side_count();
+    r.bounces = volume_.report();
+    r.injected = volume_.report().sent;
+    r.lost = volume_.flux().lost;
+    r.memory_bytes = volume_.bytes() + voxels_.bytes() + radiance_.bytes() + gather_.bytes();
+    return r;
+  }
+
+ private:
+  VolumeOptions options_;
+  VolumeCpu volume_;
+  RadianceVolumeGl radiance_;
+  gl::Texture normal_occupancy_;
+  VoxelGridGl voxels_;
+  RadianceGather gather_;
+};
+
 }  // namespace
 
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
-  return std::make_unique<SidesOnCpu>(scene, options, size);
+  if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnCpu>(scene, options, size);
+  return std::make_unique<PulseOnCpu>(scene, options, size);
 }
 
 }  // namespace volgi::screen

@@ -74,7 +74,7 @@ void BlockCells::slice(const SliceTriangle& t) {
     cell[c] = column_c / kFine;
     cell[axis] = std::clamp(int(std::floor(float(triangle.depth(numerator)))), 0, s_.grid.cells[axis] - 1);
     if (cell[axis] < first_cell_[axis] || cell[axis] > last_cell[axis]) return;
-    const SlicedMaterial m = material_at(s_, t, n, axis, column_b, column_c);
+    const SlicedMaterial m = material_at(s_, t, n, axis, column_b, column_c, kLineFootprint);
     if (!(m.stopped > 0.0f)) return;
     Cell& to = cells_[size_t(leaf_offset(cell))];
     const double area = area_of_one * double(m.stopped);

@@ -119,7 +119,7 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
     const bool centre = sub == 4;
     float stopped = 1.0f;
     if constexpr (may_pass) {
-      stopped = material_at(s_, t, n, axis, column_b, column_c).stopped;
+      stopped = material_at(s_, t, n, axis, column_b, column_c, kLineFootprint).stopped;
       if (!(stopped > 0.0f)) return;
     }
     const int cell_b = kTable.cell[at_b], cell_c = kTable.cell[at_c], local = kTable.cell[at_segment];

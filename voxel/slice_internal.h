@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/mipmaps.h"
 #include "core/scene.h"
 #include "voxel/cell_volumes.h"
 #include "voxel/voxel_grid.h"
@@ -73,6 +74,7 @@ struct SlicedScene {
   std::vector<std::uint32_t> binned;    // triangles
   std::vector<std::uint32_t> occupied;  // blocks with triangles, ascending
 
+  std::shared_ptr<const Mipmaps> mipmaps;
   std::vector<std::optional<SlicedMaterial>> constant;  // by mesh: where no texture or vertex colour varies it
 
   const Mesh& mesh(const SliceTriangle& t) const { return scene->meshes[t.mesh]; }
@@ -84,9 +86,13 @@ struct SlicedScene {
 };
 SlicedScene slice_scene(const Scene& scene, const Grid& grid);
 
-/// At a fine column of the pass along `axis`.
+// Edge in cells of the square that a texel should stand for: alpha belongs to a fine line, albedo to a face.
+constexpr float kLineFootprint = 1.0f / kFine;
+constexpr float kFaceFootprint = 1.0f;
+
+/// At a fine column of the pass along `axis`. @param footprint  cells, on an edge.
 SlicedMaterial material_at(const SlicedScene& s, const SliceTriangle& t, const Long3& n, int axis, int fine_b,
-                           int fine_c);
+                           int fine_c, float footprint);
 
 /// Depth of the triangle's plane along `axis` in cell units, where the column's coordinates are `position` (in steps).
 inline double plane_depth(const SliceTriangle& t, const Long3& n, int axis, std::int64_t position_b,

@@ -7,8 +7,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <string>
 
 #include "core/error.h"
@@ -23,7 +21,6 @@ constexpr int kTextScale = 2;
 constexpr int kLineHeight = 12 * kTextScale;  // stb_easy_font's line is 12 high
 constexpr int kBarHeight = 14;
 constexpr glm::vec3 kBackground(0.1f), kText(0.9f), kNoValue(0.27f), kNotFinite(1.0f, 0.0f, 1.0f);
-constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);  // Rec. 709
 constexpr std::array kAxisNames{'x', 'y', 'z'};
 
 struct Cell {
@@ -38,6 +35,8 @@ glm::dvec3 as_vector(const Value& value) {
 }
 
 bool is_finite(glm::dvec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+double luminance(glm::dvec3 v) { return kLuminance[0] * v.x + kLuminance[1] * v.y + kLuminance[2] * v.z; }
 
 /// Axes of a slice's picture: to the right and vertical, and whether the vertical one points up.
 struct Orientation {
@@ -78,21 +77,6 @@ Slice read_slice(const openvdb::GridBase& grid, const openvdb::CoordBBox& box, S
   return slice;
 }
 
-/// Mean of the luminance's size where there is light; nothing where there is none.
-std::optional<double> mean_luminance(const openvdb::GridBase& grid) {
-  double sum = 0.0, cells = 0.0;
-  grid.apply<NumberGrids>([&](const auto& typed) {
-    for (auto it = typed.cbeginValueOn(); it; ++it) {
-      const double luminance = std::abs(glm::dot(kLuminance, as_vector(*it)));
-      if (!(luminance > 0.0) || !std::isfinite(luminance)) continue;
-      sum += luminance * double(it.getVoxelCount());
-      cells += double(it.getVoxelCount());
-    }
-  });
-  if (cells == 0.0) return std::nullopt;
-  return sum / cells;
-}
-
 /// How values become colours, and what the legend says about it.
 class ColorScale {
  public:
@@ -113,9 +97,8 @@ class ColorScale {
     end_ = share || largest_ == 0.0 ? 1.0 : largest_;
     // As a light meter has it: the mean becomes middle grey, 0.18, and 1 is white, where the bar ends. Near a lamp
     // values are a thousand times those of the room.
-    const auto middle = vector && !share ? mean_luminance(grid) : std::nullopt;
-    exposed_ = middle && kind_ != Kind::normal;
-    if (exposed_) end_ = *middle / 0.18;
+    exposed_ = vector && !share && kind_ != Kind::normal && s.lit_luminance > 0.0;
+    if (exposed_) end_ = s.lit_luminance / 0.18;
   }
 
   glm::vec3 operator()(glm::dvec3 v) const {
@@ -126,7 +109,7 @@ class ColorScale {
       case Kind::signed_number:
         return diverging(float(v.x / end_));
       case Kind::signed_luminance:
-        return diverging(float(glm::dot(kLuminance, v) / end_));
+        return diverging(float(luminance(v) / end_));
       case Kind::normal:
         return glm::vec3(0.5 + 0.5 * v);
       case Kind::color:

@@ -1,4 +1,5 @@
 #include <tbb/parallel_for.h>
+#include <algorithm>
 
 #include <glm/gtc/constants.hpp>
 
@@ -7,6 +8,10 @@
 namespace volgi::slicing {
 
 namespace {
+
+// A line off the column's centre may show a plane that passes the centre far away: it is kept where it is, so that "in
+// front of the surface" is asked of the true plane.
+constexpr double kFarthestDepth = 4096.0;
 
 constexpr std::uint64_t kLastOfRow = 0x0101010101010101u;  // bit 8y
 
@@ -118,14 +123,14 @@ class SideWriter {
     if (!(t.normal[axis] * float(n[size_t(axis)]) > 0.0f)) {
       out.normal = glm::vec3(glm::normalize(glm::dvec3(double(n[0]), double(n[1]), double(n[2]))));
     }
-    const SlicedMaterial material =
-        material_at(s_, t, n, axis, kFine * face_cell[b] + sub % kFine, kFine * face_cell[c] + sub / kFine);
+    const SlicedMaterial material = material_at(s_, t, n, axis, kFine * face_cell[b] + sub % kFine,
+                                                kFine * face_cell[c] + sub / kFine, kFaceFootprint);
     out.albedo = material.albedo;
     out.emission = material.emission;
     out.double_sided = s_.material(t).double_sided;
     const double depth =
         plane_depth(t, n, axis, node_position(kFine * face_cell[b] + 1), node_position(kFine * face_cell[c] + 1));
-    out.depth = glm::clamp(float(depth), float(face_cell[axis]) - 0.5f, float(face_cell[axis]) + 0.5f);
+    out.depth = float(std::clamp(depth, -kFarthestDepth, kFarthestDepth));
     return out;
   }
 

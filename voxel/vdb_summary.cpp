@@ -14,7 +14,7 @@ void add_ranges(const GridType& grid, GridSummary& summary) {
   constexpr int count = channel_count<typename GridType::ValueType>();
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<ChannelRange> ranges(size_t(count), ChannelRange{infinity, -infinity, 0.0});
-  double finite_cells = 0.0;
+  double finite_cells = 0.0, lit_cells = 0.0, lit = 0.0;
   for (auto it = grid.cbeginValueOn(); it; ++it) {
     const auto cells = it.getVoxelCount();
     bool finite = true;
@@ -24,16 +24,22 @@ void add_ranges(const GridType& grid, GridSummary& summary) {
       continue;
     }
     finite_cells += double(cells);
+    double luminance = 0.0;
     for (int c = 0; c < count; ++c) {
       ChannelRange& range = ranges[size_t(c)];
       const double value = channel(*it, c);
       range.minimum = std::min(range.minimum, value);
       range.maximum = std::max(range.maximum, value);
       range.mean += value * double(cells);
+      luminance += kLuminance[c] * value;
     }
+    if (luminance == 0.0) continue;
+    lit_cells += double(cells);
+    lit += std::abs(luminance) * double(cells);
   }
   if (finite_cells == 0.0) return;
   for (ChannelRange& range : ranges) range.mean /= finite_cells;
+  if (count == 3 && lit_cells > 0.0) summary.lit_luminance = lit / lit_cells;
   summary.channels = std::move(ranges);
 }
 

@@ -43,8 +43,11 @@ struct GridSummary {
   double active_share = 0.0;           // of the index box
   std::uint64_t not_finite = 0;        // active cells with a NaN or an infinity
   std::vector<ChannelRange> channels;  // 1 or 3; empty for types without numbers and for grids without active cells
+  double lit_luminance = 0.0;          // mean size of the luminance (Rec. 709) of colours where it is not 0
   std::uint64_t memory_bytes = 0;
 };
+
+inline constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};  // Rec. 709
 
 /// @param grid  any type; ranges are for scalars and 3-vectors. Index (i,j,k) is a cell's centre (cell_volumes.h).
 /// Cost: one pass over the active values, in the order of the tree, so that means do not depend on threads.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -132,9 +133,9 @@ int ExportCommand::run() const {
   const Grid& grid = computed.grid();
   fmt::print("{}: {} x {} x {} cells of {:.6g} m", scene.name, grid.cells.x, grid.cells.y, grid.cells.z,
              grid.cell_size_m);
-  if (has_radiance())
-    fmt::print(", {}, {} orders in {} passes", scheme_text(options, grid), computed.report().orders,
-               computed.report().passes);
+  const BounceReport& report = computed.report();
+  if (has_radiance()) fmt::print(", {}, {} passes", scheme_text(options, grid), report.passes);
+  if (report.orders > 0) fmt::print(" in {} orders", report.orders);
   fmt::print("\nwrote {}: {} grids\n", out.string(), grids.grids().size());
   return int(ExitCode::done);
 }
@@ -152,15 +153,19 @@ void add_export_command(CLI::App& app, int& exit_code) {
                    "voxels: occupancy, albedo, normal, emission; radiance: fluence and spherical harmonics as well")
       ->check(CLI::IsMember({"voxels", "radiance"}))
       ->capture_default_str();
-  command->add_option("--backend", options->backend, "where the volume is computed; the same on any machine")
+  command->add_option("--backend", options->backend, "where the volume is computed: the CPU")
       ->check(CLI::IsMember({"auto", "cpu"}))
       ->capture_default_str();
   command->add_option("--time", options->time_s, "time of the file's animations [s]")
-      ->check(CLI::Number)
+      ->check([](const std::string& text) {
+        double time = 0.0;
+        const bool finite = CLI::detail::lexical_cast(text, time) && std::isfinite(time);
+        return finite ? std::string() : fmt::format("'{}' is not a finite number", text);
+      })
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->footer(
-      "Values are floats, in the unit that each grid names; blender and houdini open the file, vdb_print -l lists it.\n"
+      "Values are floats, in the unit that each grid names; Blender and Houdini open the file, vdb_print -l lists it.\n"
       "Example: volgi export data/cornell.glb -o out/cornell.vdb --grid 32");
   command->callback([options, &exit_code] { exit_code = options->run(); });
 }

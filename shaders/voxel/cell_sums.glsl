@@ -2,4 +2,5 @@
 // are. Two numbers a buffer, so that buffers stay below 128 MiB up to 256^3 cells.
 const float AREA_UNITS = 1048576.0;
 layout(std430, binding = 0) buffer CellSums { uvec2 at[]; } cell_sums[6];
-// 0: area, most that is stopped; 1: albedo r, g; 2: albedo b, normal x; 3: normal y, z (as int); 4: most radiosity r, g; 5: b
+// 0: area, most that is stopped; 1: albedo r, g; 2: albedo b, normal x; 3: normal y, z (as int); 4: most radiosity r, g;
+// 5: its b

@@ -11,7 +11,7 @@ void add_piece(inout Heap heap, vec3 weights, float stopped) {
 
 uint fixed_point(float v) { return uint(int(floor(v * AREA_UNITS + 0.5))); }
 
-void end_cell(Heap heap) {
+void end_cell(Lines lines, Heap heap) {
   int cell = cell_index(grid, heap.cell);
   float area = heap.area * piece_area();
   vec3 albedo = heap.albedo * piece_area();

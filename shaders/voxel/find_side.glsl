@@ -22,8 +22,9 @@ bool behind_side(Side side, vec3 normal, int axis, float depth) {
 // The sides of `axis` that a surface point (cell units) may belong to: the surface, continued as a plane to the centre of
 // the point's column, blocks one face there. Where the surface ends before the centre, the nearest columns are asked.
 // x: the first whose normal is alike, y: the first that faces the same way at all, of those before x; -1 for none.
-// front: 1 or 0 for sides that show a triangle's front or back only, -1 for any.
-ivec2 find_side(vec3 point, vec3 normal, int axis, int front) {
+// front: 1 or 0 for sides that show a triangle's front or back only, -1 for any. place_matters is set where another point
+// of the plane in the same cell may get another answer.
+ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_matters) {
   int b = axis_b(axis);
   int c = axis_c(axis);
   int up = normal[axis] > 0.0 ? 1 : 0;
@@ -37,8 +38,11 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front) {
     ivec3 cell = own;
     cell[b] += place % 3 - 1;
     cell[c] += place / 3 - 1;
-    float depth = point[axis] + (normal[b] * (point[b] - float(cell[b]) - 0.5) + normal[c] * (point[c] - float(cell[c]) - 0.5)) / normal[axis];
-    if (abs(depth - point[axis]) > 3.0) continue;
+    vec3 from_centre = point - vec3(cell) - 0.5;
+    float depth = point[axis] + (normal[b] * from_centre[b] + normal[c] * from_centre[c]) / normal[axis];
+    float away = abs(depth - point[axis]);
+    if (away > 2.0 && away < 4.0) place_matters = true;
+    if (away > 3.0) continue;
     cell[axis] = face_of_depth(depth) + (step == 0 ? 0 : step == 1 ? 1 : -1) - 1 + up;
     if (!cell_inside(grid, cell)) continue;
     uvec2 own_sides = cell_sides[cell_index(grid, cell)];
@@ -55,12 +59,13 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front) {
 // A staircase of normal n has its area in the three face families as |n_x| : |n_y| : |n_z|; so goes what is at the point.
 // Sides that merely face the same way count where no family has one that is alike. Weights sum to 1, or to 0 where no side
 // is found. `point` in cell units.
-void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, out vec3 weights) {
+void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, out vec3 weights,
+                         inout bool place_matters) {
   ivec3 alike = ivec3(-1);
   ivec3 facing = ivec3(-1);
   for (int axis = 0; axis < 3; ++axis) {
     if (abs(normal[axis]) < 1e-3) continue;
-    ivec2 found = find_side(point, normal, axis, front);
+    ivec2 found = find_side(point, normal, axis, front, place_matters);
     alike[axis] = found.x;
     facing[axis] = found.y;
   }
@@ -70,5 +75,6 @@ void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, 
 }
 
 void sides_of_point(vec3 world_position, vec3 normal, int front, out ivec3 targets, out vec3 weights) {
-  sides_of_cell_point(cell_from_world(grid, world_position), normal, front, targets, weights);
+  bool place_matters = false;
+  sides_of_cell_point(cell_from_world(grid, world_position), normal, front, targets, weights, place_matters);
 }

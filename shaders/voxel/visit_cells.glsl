@@ -9,14 +9,21 @@ float piece_area() { return 1.0 / (9.0 * abs(v_normal[v_axis])); }
 
 struct Heap {
   ivec3 cell;   // below 0: none yet
-  vec3 point;   // of the first piece, cell units
+  uint pieces;  // bits fb%3 + 3 (fc%3) of their lines
   float area;   // stopped, in pieces
   float stopped;  // most
   vec3 albedo;    // times area
   vec3 radiosity;  // most
 };
 void add_piece(inout Heap heap, vec3 weights, float stopped);
-void end_cell(Heap heap);
+void end_cell(Lines lines, Heap heap);
+
+// Where the first of some pieces lies, cell units.
+vec3 first_point(Lines lines, uint pieces) {
+  int number = findLSB(pieces);
+  ivec2 line = 3 * ivec2(gl_FragCoord.xy) + ivec2(number % 3, number / 3);
+  return from_family(vec3(float(depth_at(lines, plane_at(lines, line))), (vec2(line) + 0.5) / 3.0), v_axis);
+}
 
 void visit_cells() {
   int axis = v_axis;
@@ -30,7 +37,7 @@ void visit_cells() {
   ivec2 last = min(in_family(last_line(max(max(v_vertex[0], v_vertex[1]), v_vertex[2])), axis).yz, 3 * column + 2);
   ivec2 line = first;
   while (line.y <= last.y) {
-    Heap heap = Heap(ivec3(-1), vec3(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0));
+    Heap heap = Heap(ivec3(-1), 0u, 0.0, 0.0, vec3(0.0), vec3(0.0));
     while (line.y <= last.y) {
       dvec3 edges = edges_at(lines, line);
       double plane = plane_at(lines, line);
@@ -42,8 +49,8 @@ void visit_cells() {
         float stopped = stopped_at(weights);
         if (stopped > 0.0) {
           if (heap.cell.x >= 0 && cell.x != heap.cell.x) break;
-          if (heap.cell.x < 0) heap.point = vec3(depth, (vec2(line) + 0.5) / 3.0);
           heap.cell = cell;
+          heap.pieces |= 1u << (line.x % 3 + 3 * (line.y % 3));
           heap.area += stopped;
           heap.stopped = max(heap.stopped, stopped);
           add_piece(heap, weights, stopped);
@@ -53,8 +60,7 @@ void visit_cells() {
     }
     if (heap.cell.x >= 0) {
       heap.cell = from_family(heap.cell, axis);
-      heap.point = from_family(heap.point, axis);
-      end_cell(heap);
+      end_cell(lines, heap);
     }
   }
 }

@@ -20,7 +20,7 @@ Surface surface_of(int axis, Lines lines, ivec3 place, uint key, bool upper) {
   float centre_depth = float(depth_at(lines, plane_at(lines, 3 * place.yz + 1)));
   Surface s;
   s.normal = front ? normal : -normal;
-  s.depth = clamp(centre_depth, float(place.x) - 0.5, float(place.x) + 0.5);
+  s.depth = clamp(centre_depth, -4096.0, 4096.0);  // off the centre line the true plane may pass the centre far away
   s.albedo = albedo_alpha_at(weights).rgb;
   s.front = front ? 1 : 0;
   s.radiosity = vec3(0.0);

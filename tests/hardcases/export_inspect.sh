@@ -116,6 +116,7 @@ refuse 2 --directions export "$scene" -o out.vdb --scheme conservative --directi
 refuse 2 --stage export "$scene" -o out.vdb --stage all
 refuse 2 --backend export "$scene" -o out.vdb --backend gpu
 refuse 2 --time export "$scene" -o out.vdb --time soon
+refuse 2 --time export "$scene" -o out.vdb --time inf
 refuse 5 --memory-limit export "$scene" -o out.vdb --memory-limit 1K
 # A disk that is full after 8 KiB: neither half a file nor a temporary one.
 (

@@ -189,7 +189,8 @@ TEST(ChooseOrdinates, FollowsTheGridAndWhatIsAskedFor) {
   const SchemeOptions nothing;
   EXPECT_EQ(choose_ordinates({16, 8, 16}, nothing).directions, 24);
   EXPECT_EQ(choose_ordinates({16, 8, 16}, nothing).rule, Ordinates::step);
-  EXPECT_EQ(choose_ordinates({8, 32, 8}, nothing).directions, 48);
+  EXPECT_EQ(choose_ordinates({8, 32, 8}, nothing).directions, 128);
+  EXPECT_EQ(choose_ordinates({8, 32, 8}, nothing).rule, Ordinates::step);
   EXPECT_EQ(choose_ordinates({8, 8, 33}, nothing).directions, 128);
   EXPECT_EQ(choose_ordinates({128, 8, 8}, nothing).directions, 128);
   EXPECT_EQ(choose_ordinates({128, 8, 8}, nothing).rule, Ordinates::characteristic);
@@ -201,7 +202,7 @@ TEST(ChooseOrdinates, FollowsTheGridAndWhatIsAskedFor) {
   EXPECT_EQ(choose_ordinates({64, 64, 64}, few).rule, Ordinates::step);
   SchemeOptions sharp;
   sharp.ordinates = Ordinates::characteristic;
-  EXPECT_EQ(choose_ordinates({16, 16, 16}, sharp).directions, 48);
+  EXPECT_EQ(choose_ordinates({16, 16, 16}, sharp).directions, 128);
   SchemeOptions both;
   both.directions = 80;
   both.ordinates = Ordinates::step;

@@ -52,8 +52,8 @@ TEST_P(Conservative, AgreesWithThePlainPulse) {
       for (int band = 0; band < 3; ++band)
         worst = std::max(worst, std::abs(double(received[i][band]) - exact[i][band]));
     }
-    // Order 2 passes nothing below FLUX_LEAST: what is near it may fall either way.
-    EXPECT_LT(worst, (order() == 1 ? 2e-5 : 1e-4) * largest(received)) << reflect_hits;
+    // What is handed on jumps where a face's power passes zero: near it, rounding decides.
+    EXPECT_LT(worst, 1e-4 * largest(received)) << reflect_hits;
     const glm::ivec3 cell(10, 8, 5);
     const float* leaf = transport.lobes().leaf(transport.numbers().number(cell / 8));
     for (int k = 0; k < (order() == 1 ? 4 : 9); ++k)
@@ -257,8 +257,8 @@ TEST_P(Conservative, PassesAreCountedAndDoNotDependOnHowTheyAreAskedFor) {
 // Black walls, one order: the light of the furnace is everywhere the same radiance from all directions. A pulse is not
 // linear, so not exactly: measured -7.4 % (order 1) and +2.0 % (order 2).
 TEST_P(Conservative, RadianceInTheFurnace) {
-  const VoxelGrid voxels = closed_box({16, 16, 16}, 0.0f);
-  ConservativeTransport transport(voxels, order());
+  const VoxelGrid voxels = closed_box({16, 16, 16}, 0.0f), half_voxels = closed_box({8, 8, 8}, 0.0f, 0.5f);
+  ConservativeTransport transport(voxels, order(), &half_voxels);  // whose coarse part takes nothing away
   Powers sent;
   for (const shared::Side& side : voxels.sides()) sent.emplace_back(glm::vec3(float(M_PI) * side.area_m2), 0.0f);
   const RadianceVolume radiance = transport.radiance(sent);

@@ -308,6 +308,11 @@ TEST(OrdinatesTransport, DarkRoomStaysDark) {
       const bool lit = shared::cell_coord(voxels.grid(), voxels.sides()[i].cell).x < 19;
       EXPECT_EQ(received[i].x > 0.0f, lit);
     }
+    // Then the other room: nothing of the orders before is left in this one.
+    Powers other(sent.size());
+    for (size_t i = 0; i < sent.size(); ++i) other[i] = glm::vec4(1.0f) - sent[i];
+    const Powers later = carry(transport, other);
+    for (size_t i = 0; i < sent.size(); ++i) EXPECT_EQ(later[i].x > 0.0f, sent[i].x == 0.0f);
     const RadianceVolume volume = transport.radiance(sent);
     EXPECT_EQ(volume.sh[0]->activeVoxelCount(), 19u * 16u * 16u);
     EXPECT_EQ(volume.sh[3]->activeVoxelCount(), 19u * 16u * 16u);

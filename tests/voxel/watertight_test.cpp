@@ -118,7 +118,7 @@ int escapes(const Voxels& v, glm::vec3 middle, const Outside& outside) {
   const std::vector<char> reached = v.flood(start);
   int count = 0;
   for (int i = 0; i < int(reached.size()); ++i) {
-    // Vertices are rounded to 2^-9 cells (slice_vertex).
+    // Vertices are rounded to 1/384 of a cell (slice_vertex).
     const bool beyond = outside(v.centre(shared::cell_coord(v.grid, i))) > v.grid.cell_size_m / 256.0f;
     count += beyond ? reached[size_t(i)] : 0;
   }
