@@ -17,7 +17,9 @@ struct CrosscheckRow {
   double percentile_999 = 0.0;
   glm::ivec3 worst_cell{0};  // where the maximum is
   double limit = 0.0;
-  bool ties = false;  // where a point lies on the boundary of two columns rounding decides: 99.9 % must be within
+  /// Rounding decides at points on the boundary of two columns, and at faces whose power `conservative` clamps: then
+  /// 99.9 % must be within the limit.
+  bool ties = false;
   bool passed() const { return (ties ? percentile_999 : maximum) <= limit; }
 };
 

@@ -96,15 +96,16 @@ class Cavity : public GlTest {
 
   /// A spot in the middle of a sphere lights a twelfth of it: mean E of all reflected light over the exact rho Phi /
   /// ((1-rho) area).
-  static double sphere_ratio(float albedo, Scheme scheme, int cells) {
+  static double sphere_ratio(float albedo, Scheme scheme, int cells, glm::vec3 centre = glm::vec3(0.0f)) {
     Scene scene;
-    add_sphere_inside(scene, add_material(scene, glm::vec3(albedo)), glm::vec3(0.0f), 0.9f, 24);
+    add_sphere_inside(scene, add_material(scene, glm::vec3(albedo)), centre, 0.9f, 24);
     scene.lights.push_back(
-        spot_light(glm::vec3(0.01f, 0.02f, 0.0f), {1.0f, -0.6f, 0.4f}, 32.0f, 33.0f, glm::vec3(2.0f)));
+        spot_light(centre + glm::vec3(0.01f, 0.02f, 0.0f), {1.0f, -0.6f, 0.4f}, 32.0f, 33.0f, glm::vec3(2.0f)));
     const Solved s = solve(scene, unit_grid(cells), scheme, albedo);
     double sum = 0.0, areas = 0.0;
     for (size_t i = 0; i < s.sides.size(); ++i) {
-      const glm::vec3 c = glm::vec3(shared::cell_coord(unit_grid(cells), s.sides[i].cell)) + 0.5f - 0.5f * float(cells);
+      const glm::vec3 c = glm::vec3(shared::cell_coord(unit_grid(cells), s.sides[i].cell)) + 0.5f -
+                          shared::cell_from_world(unit_grid(cells), centre);
       if (glm::dot(s.sides[i].normal, c) > 0.0f) continue;  // seen from outside
       sum += double(s.sides[i].area_m2 * s.indirect[i].x);
       areas += double(s.sides[i].area_m2);
@@ -124,11 +125,19 @@ TEST_F(Cavity, SphereOrdinates) {
   }
 }
 
+// Nine samples of area a face see a sphere of 14 cells differently from place to place (rms 2.5 % at albedo 0.3): the
+// mean over places counts.
 TEST_F(Cavity, SphereConservative) {
   for (float albedo : {0.3f, 0.7f}) {
-    const double ratio = sphere_ratio(albedo, Scheme::conservative, 16);
-    EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
-    RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(ratio));
+    double sum = 0.0;
+    for (glm::vec3 centre : {glm::vec3(0.0f), glm::vec3(0.03f, -0.02f, 0.05f), glm::vec3(-0.05f, 0.04f, 0.02f),
+                             glm::vec3(0.04f, 0.05f, -0.03f)}) {
+      const double ratio = sphere_ratio(albedo, Scheme::conservative, 16, centre);
+      EXPECT_NEAR(ratio, 1.0, 0.06) << "albedo " << albedo;
+      sum += ratio;
+    }
+    EXPECT_NEAR(sum / 4.0, 1.0, 0.03) << "albedo " << albedo;
+    RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), std::to_string(sum / 4.0));
   }
 }
 
