@@ -25,7 +25,7 @@ glm::vec3 point_at(int axis, glm::ivec3 cell, int sub, float depth) {
 class AreaCounter {
  public:
   AreaCounter(const SlicedScene& s, const VoxelGrid& voxels)
-      : s_(s), voxels_(voxels), columns_(voxels), sums_(std::vector<std::uint32_t>(voxels.side_count())) {}
+      : s_(s), voxels_(voxels), columns_(voxels), fixed_(voxels.side_count()) {}
 
   void add(const std::vector<AreaRecord>& records) {
     for (size_t first = 0, last = 0; first < records.size(); first = last) {
@@ -36,11 +36,9 @@ class AreaCounter {
     }
   }
 
-  /// Sums over the threads.
-  std::vector<const std::uint32_t*> sums() const {
-    std::vector<const std::uint32_t*> out;
-    for (const auto& of_thread : sums_) out.push_back(of_thread.data());
-    return out;
+  float area_m2(size_t side) const {
+    const float h = s_.grid.cell_size_m;
+    return float(fixed_[side].load(std::memory_order_relaxed)) / kAreaUnit * h * h;
   }
 
  private:
@@ -82,7 +80,7 @@ class AreaCounter {
   const SlicedScene& s_;
   const VoxelGrid& voxels_;
   SideColumns columns_;
-  tbb::enumerable_thread_specific<std::vector<std::uint32_t>> sums_;  // one a thread: sooner added up than shared
+  std::vector<std::atomic<std::uint32_t>> fixed_;
 };
 
 }  // namespace

@@ -94,6 +94,7 @@ Scene BenchCommand::scene(const std::string& name) const {
 
 void BenchCommand::run_propagation(nlohmann::json& results) const {
   nlohmann::json& r = results["propagation"];
+  set_quiet(true);  // no word about how long a benchmark takes
   r = bench_propagation(largest_grid, frames);
   r["conservative_over_copy"] = bench_conservative(largest_grid, 16, frames);
   const Scene atrium = scene("atrium");

@@ -72,11 +72,11 @@ SHARED_FUNCTION int face_of_depth(float x) {
   return int(floor(snapped + 0.5f));
 }
 
-// Vertices as the slicing passes see them: rounded to 1/384 of a cell, so that which columns a triangle covers and which
-// cell centres lie behind it can be answered exactly. The answers then are about one surface, and what is closed in the
-// scene is closed in the volume. 384 = 2^7 3: the centres of cells and the nodes of the lattice three times finer, node
-// 3 cell + sub at (2 node + 1) 64 steps, are whole numbers. In a grid of 256 cells coordinates stay under 2^16.7, cross
-// products under 2^34.4 and the terms of a determinant under 2^51.1: exact in double precision.
+// Vertices as the slicing passes see them: rounded to 1/384 of a cell, so that which columns a triangle covers and
+// which cell centres lie behind it can be answered exactly. The answers then are about one surface, and what is closed
+// in the scene is closed in the volume. 384 = 2^7 3: the centres of cells and the nodes of the lattice three times
+// finer, node 3 cell + sub at (2 node + 1) 64 steps, are whole numbers. In a grid of 256 cells coordinates stay under
+// 2^16.7, cross products under 2^34.4 and the terms of a determinant under 2^51.1: exact in double precision.
 #define SLICE_STEPS 384  // of a cell
 SHARED_FUNCTION ivec3 slice_vertex(vec3 cell) { return ivec3(floor(cell * float(SLICE_STEPS) + 0.5f)); }
 

@@ -1,7 +1,7 @@
 // Spherical harmonics up to band 2 and what the SH schemes integrate: `conservative` over a cell's six 90-degree
 // pyramids, lpv2009 over the faces of a neighbour, gaitatzes2010 over a 90-degree cone. Real, orthonormal, no
-// Condon-Shortley sign; order 00, 1-1 (y), 10 (z), 11 (x), 2-2 (xy), 2-1 (yz), 20, 21 (xz), 22 (conventions). Lobes here
-// are coefficients of an intensity [W/sr] times sqrt(4 pi), so that the first number is the power [W] (before
+// Condon-Shortley sign; order 00, 1-1 (y), 10 (z), 11 (x), 2-2 (xy), 2-1 (yz), 20, 21 (xz), 22 (conventions). Lobes
+// here are coefficients of an intensity [W/sr] times sqrt(4 pi), so that the first number is the power [W] (before
 // clamp_rescale; a rescaled lobe carries the sum of what its faces pass): I(d) is
 // 1/(4 pi) times the sum of lobe_i and sh_basis_i(d). Order 1 is a vec4; order 2 adds a vec4 (xy, yz, 20, xz) and a
 // float (22).
@@ -48,9 +48,9 @@ SHARED_FUNCTION float sh_basis_22(vec3 d) { return 0.5f * SH_SQRT15 * (d.x * d.x
 
 // `conservative` of order 2: FLUX_* of sh_constants.shared.h.
 struct Lobe9 {
-  vec4 low;   // 00, y, z, x
-  vec4 mid;   // xy, yz, 20, xz
-  float high; // 22
+  vec4 low;    // 00, y, z, x
+  vec4 mid;    // xy, yz, 20, xz
+  float high;  // 22
 };
 
 // The coefficients 20 and 22 (p) as those of (1.5 a^2 - 0.5) and (b^2 - c^2) about the axis a; b, c its next two,
@@ -106,11 +106,11 @@ SHARED_FUNCTION float radiance_from_lobe(float cell_size_m) {
   return 0.28209479f * 2.0f / (3.0f * cell_size_m * cell_size_m);
 }
 
-// gaitatzes2010 as we read it (docs/theory.md#papers). The lobe of a neighbour that comes in along `travel` (unit, along
-// an axis) with power P is P times the cone's lobe about `travel`. In a cell of occupancy o the share 1 - o goes on as it
-// is; the share o is mirrored on the axis nearest to the mean normal (the first of equals) if it heads into the surface.
-// Where normals cancel (zero) light meets the surface from either side: it is mirrored on the axis it travels along.
-// The mirrored lobe is of revolution about an axis, so mirroring is a change of `travel`.
+// gaitatzes2010 as we read it (docs/theory.md#papers). The lobe of a neighbour that comes in along `travel` (unit,
+// along an axis) with power P is P times the cone's lobe about `travel`. In a cell of occupancy o the share 1 - o goes
+// on as it is; the share o is mirrored on the axis nearest to the mean normal (the first of equals) if it heads into
+// the surface. Where normals cancel (zero) light meets the surface from either side: it is mirrored on the axis it
+// travels along. The mirrored lobe is of revolution about an axis, so mirroring is a change of `travel`.
 SHARED_FUNCTION int nearest_axis(vec3 normal) {
   vec3 a = abs(normal);
   return a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);

@@ -23,11 +23,12 @@ const float PYRAMID_AXIS_AXIS = 0.35044297f;   // 3/(4 pi) * int x^2
 const float PYRAMID_TRANSVERSE = 0.07477852f;  // 3/(4 pi) * int y^2
 
 // `conservative` of order 2 (docs/theory.md#conservative). Cut at pyramids a lobe of nine coefficients rings. Cells are
-// taken as holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half sphere,
-// which is smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a lobe I
-// stands for the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so that
-// int s Y_i is kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no
-// cross terms, by the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z are:
+// taken as holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half
+// sphere, which is smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a
+// lobe I stands for the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so
+// that int s Y_i is kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no
+// cross terms, by the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z
+// are:
 //          00          10            20                            11        21 (xz)               22       2-2 (xy)
 //   00     1/6         sqrt3/9       sqrt5/24               11     1/8       sqrt5/15       22     1/9
 //   10     sqrt3/9     1/4           2 sqrt15/45            21     8sqrt5/125  1/5          2-2              1/10
@@ -47,8 +48,8 @@ const float FLUX_ACROSS_11 = 0.125f;  // 11 and 1-1; 21 and 2-1
 const float FLUX_ACROSS_12 = 0.14907120f;
 const float FLUX_ACROSS_21 = 0.14310835f;
 const float FLUX_ACROSS_22 = 0.2f;
-const float FLUX_TWIN = 0.11111111f;     // x^2 - y^2
-const float FLUX_DIAGONAL = 0.1f;        // xy
+const float FLUX_TWIN = 0.11111111f;  // x^2 - y^2
+const float FLUX_DIAGONAL = 0.1f;     // xy
 // A face passes nothing below this part of the lobe's power. The power behind what a single side sends is exactly zero
 // (1/6 - 2/9 + 1/18) but what would be handed on with it is not: rounding must not decide. 2^-16: above rounding, too
 // little to see.
@@ -66,9 +67,9 @@ const float CONE_SHARE = 0.14644661f;
 const float CONE_ZONAL_1 = 0.85355339f;
 const float CONE_ZONAL_2 = 0.60355339f;
 
-// lpv2009: what the centre of a cell sees of the neighbour at +x, in cells: the far face, (3/2, 0, 0) and half edge 1/2,
-// has 4 asin((1/4) / (1/4 + 9/4)); the four side faces, centres (1, +-1/2, 0) and (1, 0, +-1/2), share what remains of
-// the near face's 4 pi/6: pi/6 - asin(1/10) each.
+// lpv2009: what the centre of a cell sees of the neighbour at +x, in cells: the far face, (3/2, 0, 0) and half edge
+// 1/2, has 4 asin((1/4) / (1/4 + 9/4)); the four side faces, centres (1, +-1/2, 0) and (1, 0, +-1/2), share what
+// remains of the near face's 4 pi/6: pi/6 - asin(1/10) each.
 const float LPV_FAR_SOLID_ANGLE = 0.40066968f;   // 4 asin(1/10) [sr]
 const float LPV_SIDE_SOLID_ANGLE = 0.42343135f;  // pi/6 - asin(1/10) [sr]
 const float LPV_SIDE_ALONG = 0.89442719f;        // direction to a side face's centre: (2, 1, 0) / sqrt(5)
