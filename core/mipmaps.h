@@ -6,8 +6,19 @@
 
 namespace volgi {
 
-/// Coarser levels of a scene's textures, for sampling surfaces at a distance (a voxel's) without aliasing. CPU twin of
-/// GL's mipmaps: level k has half the edge of level k-1, rounded down, at least 1; filtered in linear light.
+/// One level of a texture, linear light, row 0 first.
+struct MipLevel {
+  int width = 0, height = 0;
+  std::vector<glm::vec4> texels;  // RGBA in [0,1]
+};
+
+/// The texture and its coarser levels down to one texel: level k has half the edge of level k-1, rounded down, at least
+/// 1, filtered in linear light. What both twins sample: SceneBuffers uploads it, because drivers' own mipmaps are kept
+/// in 8 bits and grow darker from level to level (llvmpipe: 1 % over four).
+std::vector<MipLevel> mip_chain(const TextureImage& image, bool srgb);
+
+/// Coarser levels of a scene's textures, for sampling surfaces at a distance (a voxel's) without aliasing. Twin of
+/// what GL samples.
 /// Memory: a third of the textures' size as floats, for textures that are used as colours and as data apart.
 class Mipmaps {
  public:
@@ -21,12 +32,7 @@ class Mipmaps {
   glm::vec4 sample(int texture, glm::vec2 uv, float lod, bool srgb) const;
 
  private:
-  struct Level {
-    int width = 0, height = 0;
-    std::vector<glm::vec4> texels;
-  };
-  using Chain = std::vector<Level>;  // from level 1
-  glm::vec4 sample_level(const Texture& texture, const Level& level, glm::vec2 uv) const;
+  using Chain = std::vector<MipLevel>;
 
   const Scene& scene_;
   std::vector<Chain> chains_[2];  // by image; data, colours

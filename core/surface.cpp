@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/image.h"
+#include "core/texel_filter_internal.h"
 
 namespace volgi {
 namespace {
@@ -24,21 +25,6 @@ glm::vec4 texel(const TextureImage& image, int x, int y, bool srgb) {
   if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
   const auto& decode = decoded_srgb();
   return {decode[p[0]], decode[p[1]], decode[p[2]], alpha};
-}
-
-/// Coordinate in [0,1] of one period, so that huge ones cannot overflow an int. NaN becomes 0.
-float wrapped(float u, Wrap wrap) {
-  if (!std::isfinite(u)) return 0.0f;
-  if (wrap == Wrap::clamp_to_edge) return std::clamp(u, 0.0f, 1.0f);
-  if (wrap == Wrap::repeat) return u - std::floor(u);
-  const float t = u - 2.0f * std::floor(0.5f * u);
-  return t > 1.0f ? 2.0f - t : t;
-}
-
-/// Neighbour outside the image: a mirrored one is the edge itself.
-int wrapped_texel(int i, int size, Wrap wrap) {
-  if (wrap == Wrap::repeat) return (i + size) % size;
-  return std::clamp(i, 0, size - 1);
 }
 
 template <typename T>
@@ -82,20 +68,8 @@ glm::vec4 texture_extreme(const Scene& scene, const TextureUse& use, bool srgb, 
 glm::vec4 sample_texture(const Scene& scene, int texture, glm::vec2 uv, bool srgb) {
   const Texture& t = scene.textures[size_t(texture)];
   const TextureImage& image = scene.images[size_t(t.image)];
-  const float x = wrapped(uv.x, t.sampler.wrap_s) * float(image.width);
-  const float y = wrapped(uv.y, t.sampler.wrap_t) * float(image.height);
-  if (t.sampler.magnify_nearest) {
-    return texel(image, std::min(int(x), image.width - 1), std::min(int(y), image.height - 1), srgb);
-  }
-  const glm::vec2 corner(std::floor(x - 0.5f), std::floor(y - 0.5f));
-  const glm::vec2 share(x - 0.5f - corner.x, y - 0.5f - corner.y);
-  const int x0 = wrapped_texel(int(corner.x), image.width, t.sampler.wrap_s);
-  const int x1 = wrapped_texel(int(corner.x) + 1, image.width, t.sampler.wrap_s);
-  const int y0 = wrapped_texel(int(corner.y), image.height, t.sampler.wrap_t);
-  const int y1 = wrapped_texel(int(corner.y) + 1, image.height, t.sampler.wrap_t);
-  const glm::vec4 top = glm::mix(texel(image, x0, y0, srgb), texel(image, x1, y0, srgb), share.x);
-  const glm::vec4 bottom = glm::mix(texel(image, x0, y1, srgb), texel(image, x1, y1, srgb), share.x);
-  return glm::mix(top, bottom, share.y);
+  return filter_texels(t.sampler, {image.width, image.height}, uv, t.sampler.magnify_nearest,
+                       [&](int x, int y) { return texel(image, x, y, srgb); });
 }
 
 SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {

@@ -30,8 +30,6 @@ using shared::Side;
 constexpr double kCellsThatMayDiffer = 1e-3;
 constexpr double kAttributeLimit = 1e-3;
 constexpr double kPowerLimit = 1e-4;
-// GL keeps mipmaps in 8 bits, sRGB: half a step near white is 0.5/255 * 2.3 (llvmpipe decodes to 1.2e-3 besides).
-constexpr double kTexturedLimit = 5e-3;
 constexpr int kLightTexels = 512;  // of a spot's layer; both twins get the same samples
 
 /// Collects the differences of one stage.
@@ -96,12 +94,6 @@ CrosscheckRow compare_blocked_faces(const VoxelGrid& gpu, const VoxelGrid& cpu) 
           kCellsThatMayDiffer};
 }
 
-void allow_textures(std::vector<CrosscheckRow>& rows, size_t first) {
-  for (size_t i = first; i < rows.size(); ++i) {
-    if (rows[i].stage.ends_with("albedo") || rows[i].stage.ends_with("emission")) rows[i].limit = kTexturedLimit;
-  }
-}
-
 template <typename F>
 CrosscheckRow compare_sides(const VoxelGrid& gpu, const VoxelGrid& cpu, const char* stage, const char* scale,
                             const F& difference) {
@@ -110,8 +102,7 @@ CrosscheckRow compare_sides(const VoxelGrid& gpu, const VoxelGrid& cpu, const ch
   return d.row(gpu.grid(), stage, scale, kAttributeLimit);
 }
 
-void compare_voxels(const VoxelGrid& gpu, const VoxelGrid& cpu, bool textured, std::vector<CrosscheckRow>& rows) {
-  const size_t first = rows.size();
+void compare_voxels(const VoxelGrid& gpu, const VoxelGrid& cpu, std::vector<CrosscheckRow>& rows) {
   rows.push_back(compare_blocked_faces(gpu, cpu));
   rows.push_back(compare_sides(gpu, cpu, "coverage", "1", [](const Side& a, const Side& b) {
     return std::abs(double(a.coverage) - double(b.coverage));
@@ -130,7 +121,6 @@ void compare_voxels(const VoxelGrid& gpu, const VoxelGrid& cpu, bool textured, s
   rows.push_back(compare_sides(gpu, cpu, "side emission", "largest", [&](const Side& a, const Side& b) {
     return largest_component(a.radiosity - b.radiosity) / brightest;
   }));
-  if (textured) allow_textures(rows, first);
 }
 
 /// Per-side vectors of the same voxels, relative to the largest component.
@@ -169,7 +159,7 @@ glm::vec3 value_at(const openvdb::Vec3SGrid& grid, glm::ivec3 cell) {
   return {v.x(), v.y(), v.z()};
 }
 
-void compare_cells(const Grid& grid, const CellVolumesGl::Cells& gpu, const CellVolumes& cpu, bool textured,
+void compare_cells(const Grid& grid, const CellVolumesGl::Cells& gpu, const CellVolumes& cpu,
                    std::vector<CrosscheckRow>& rows) {
   Differences occupancy, albedo, normal, emission;
   double brightest = 1e-30;
@@ -187,7 +177,6 @@ void compare_cells(const Grid& grid, const CellVolumesGl::Cells& gpu, const Cell
   rows.push_back(albedo.row(grid, "cell albedo", "1", kAttributeLimit));
   rows.push_back(normal.row(grid, "cell normal", "1", kAttributeLimit));
   rows.push_back(emission.row(grid, "cell emission", "largest", kAttributeLimit));
-  if (textured) allow_textures(rows, rows.size() - 4);
 }
 
 /// All coefficients of all cells, relative to the largest.
@@ -344,9 +333,8 @@ std::vector<CrosscheckRow> crosscheck(const Scene& scene, const VolumeOptions& o
   const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
   std::vector<CrosscheckRow> rows;
   GpuVoxels gpu(scene, grid);
-  const bool textured = !scene.textures.empty();
-  compare_voxels(gpu.voxels, voxelize_cpu(scene, grid), textured, rows);
-  compare_cells(grid, gpu.cells.download(), cell_volumes_cpu(scene, grid), textured, rows);
+  compare_voxels(gpu.voxels, voxelize_cpu(scene, grid), rows);
+  compare_cells(grid, gpu.cells.download(), cell_volumes_cpu(scene, grid), rows);
   Stages(scene, options, gpu).run(passes, rows);
   return rows;
 }

@@ -14,8 +14,7 @@ namespace volgi {
 /// irradiance per side. run() does all of it; the stages are apart for timers and for the cross-check.
 class VolumeCpu {
  public:
-  /// @param scene  must outlive the volume. Says what memory it is going to take before it takes it (stderr is silent;
-  ///               see bytes_expected).
+  /// @param scene  must outlive the volume.
   /// @throws Error(usage) for options that make no sense, Error(over_limit) above options.memory_limit, and as
   ///   make_grid.
   VolumeCpu(const Scene& scene, const VolumeOptions& options);

@@ -1,5 +1,7 @@
 #include "propagation/volume_options.h"
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 
 namespace volgi {
@@ -19,6 +21,14 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   rules.passes_a_run = o.passes_a_run;
   rules.largest_albedo = largest_albedo;
   return rules;
+}
+
+void refuse_above_limit(const VolumeOptions& o, size_t expected, const char* where) {
+  if (!o.memory_limit || expected <= *o.memory_limit) return;
+  throw Error(ExitCode::over_limit,
+              fmt::format("--grid {}: the volume needs about {:.1f} MiB on the {}, --memory-limit allows {:.1f}; use a "
+                          "smaller --grid",
+                          o.grid_cells, double(expected) / 1048576.0, where, double(*o.memory_limit) / 1048576.0));
 }
 
 }  // namespace volgi

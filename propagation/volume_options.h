@@ -29,4 +29,8 @@ struct VolumeOptions {
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
 
+/// @throws Error(over_limit) naming both figures when `expected` exceeds options.memory_limit. @param where  "CPU",
+/// "GPU".
+void refuse_above_limit(const VolumeOptions& options, size_t expected, const char* where);
+
 }  // namespace volgi

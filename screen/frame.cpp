@@ -18,14 +18,16 @@ bool has_emission(const Scene& scene) {
 bool needs_volume(const Scene& scene, const FrameOptions& options) {
   if (options.gi != GiMode::volume || scene.triangle_count() == 0) return false;
   const bool direct_only = options.light == LightPart::direct || options.volume.bounces == 0;
+  // The papers' volumes do not know which of their light is direct.
+  if (direct_only && !carries_sides(options.volume.scheme.scheme)) return false;
   return direct_only ? has_emission(scene) : has_emission(scene) || !scene.lights.empty();
 }
 
-bool on_gpu(Backend backend) {
+}  // namespace
+
+bool runs_on_gpu(Backend backend) {
   return backend == Backend::gpu || (backend == Backend::automatic && !gl::current_is_software());
 }
-
-}  // namespace
 
 Frame::Frame(const Scene& scene, const FrameOptions& options)
     : scene_(scene),
@@ -36,10 +38,10 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
       gbuffer_(options.size),
       direct_(options.size),
       compose_(options.size) {
-  if (options.light == LightPart::direct) options_.volume.bounces = 0;
+  if (options.light == LightPart::direct && carries_sides(options.volume.scheme.scheme)) options_.volume.bounces = 0;
   if (needs_volume(scene, options_)) {
-    volume_ = on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
-                                       : make_volume_on_cpu(scene, options_.volume, options_.size);
+    volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
+                                            : make_volume_on_cpu(scene, options_.volume, options_.size);
   } else if (budget_.emission_arrival == BounceBudget::Carrier::nobody && has_emission(scene)) {
     warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
   }

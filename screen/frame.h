@@ -15,6 +15,8 @@ namespace volgi::screen {
 /// Where the volume is computed: on the GPU, or by its CPU twin (whose answer is uploaded). `automatic` takes the CPU
 /// where GL is a software rasterizer, and the GPU elsewhere.
 enum class Backend { automatic, gpu, cpu };
+/// What `automatic` means with the current gl::Context.
+bool runs_on_gpu(Backend backend);
 
 struct FrameOptions {
   GiMode gi = GiMode::volume;

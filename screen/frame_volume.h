@@ -32,8 +32,12 @@ class FrameVolume {
   virtual VolumeReport report() const = 0;
 };
 
+/// Memory that a volume is going to take [bytes], from the grid and the scene's area, before anything is allocated:
+/// what options.memory_limit is held against.
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu);
+
 /// @param scene  must outlive the volume.
-/// @throws Error as Frame.
+/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit.
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 

@@ -9,6 +9,30 @@ namespace volgi::screen {
 
 namespace {
 
+/// The stages that come before pixels, each under a timer.
+void run_stages(VolumeCpu& volume, gl::PassTimer& timer) {
+  const auto stage = [&](const char* name, void (VolumeCpu::*run)()) {
+    auto scope = timer.scope(name);
+    (volume.*run)();
+  };
+  stage("voxel/voxelize_cpu", &VolumeCpu::voxelize);
+  stage("propagation/light_in_cpu", &VolumeCpu::light_in);
+  stage("propagation/propagate_cpu", &VolumeCpu::propagate);
+  stage("propagation/side_irradiance_cpu", &VolumeCpu::irradiate);
+}
+
+VolumeReport report_of(const VolumeCpu& volume) {
+  VolumeReport r;
+  r.grid = volume.grid().cells;
+  r.sides = volume.voxels().side_count();
+  r.bounces = volume.report();
+  r.lost = volume.flux().lost;
+  for (const auto* flux : {&volume.flux().emitted, &volume.flux().punctual}) {
+    for (const glm::vec4& f : *flux) r.injected += glm::vec3(f);
+  }
+  return r;
+}
+
 /// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded, nothing is read back.
 class SidesOnCpu : public FrameVolume {
  public:
@@ -17,22 +41,7 @@ class SidesOnCpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, gl::PassTimer& timer) override {
-    {
-      auto scope = timer.scope("voxel/voxelize_cpu");
-      volume_.voxelize();
-    }
-    {
-      auto scope = timer.scope("propagation/light_in_cpu");
-      volume_.light_in();
-    }
-    {
-      auto scope = timer.scope("propagation/propagate_cpu");
-      volume_.propagate();
-    }
-    {
-      auto scope = timer.scope("propagation/side_irradiance_cpu");
-      volume_.irradiate();
-    }
+    run_stages(volume_, timer);
     {
       auto scope = timer.scope("screen/upload_volume");
       upload(volume_.voxels(), voxels_);
@@ -45,14 +54,7 @@ class SidesOnCpu : public FrameVolume {
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
   VolumeReport report() const override {
-    VolumeReport r;
-    r.grid = volume_.grid().cells;
-    r.sides = volume_.voxels().side_count();
-    r.bounces = volume_.report();
-    r.lost = volume_.flux().lost;
-    for (const auto* flux : {&volume_.flux().emitted, &volume_.flux().punctual}) {
-      for (const glm::vec4& f : *flux) r.injected += glm::vec3(f);
-    }
+    VolumeReport r = report_of(volume_);
     r.memory_bytes = volume_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() + gather_.bytes();
     return r;
   }
@@ -98,18 +100,7 @@ class PulseOnCpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& /*camera*/, gl::PassTimer& timer) override {
-    {
-      auto scope = timer.scope("voxel/voxelize_cpu");
-      volume_.voxelize();
-    }
-    {
-      auto scope = timer.scope("propagation/light_in_cpu");
-      volume_.light_in();
-    }
-    {
-      auto scope = timer.scope("propagation/propagate_cpu");
-      volume_.propagate();
-    }
+    run_stages(volume_, timer);
     {
       auto scope = timer.scope("screen/upload_volume");
       const RadianceVolume radiance = volume_.radiance();
@@ -125,12 +116,7 @@ class PulseOnCpu : public FrameVolume {
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
   VolumeReport report() const override {
-    VolumeReport r;
-    r.grid = volume_.grid().cells;
-    r.sides = volume_.voxels().side_count();
-    r.bounces = volume_.report();
-    r.injected = volume_.report().sent;
-    r.lost = volume_.flux().lost;
+    VolumeReport r = report_of(volume_);
     r.memory_bytes = volume_.bytes() + voxels_.bytes() + radiance_.bytes() + gather_.bytes();
     return r;
   }

@@ -1,6 +1,3 @@
-#include <fmt/format.h>
-
-#include "core/error.h"
 #include "core/surface.h"
 #include "propagation/bounces_gl.h"
 #include "propagation/pulse_volume_gl.h"
@@ -25,55 +22,78 @@ std::unique_ptr<TransportGl> make_transport_gl(const Grid& grid, const SchemeOpt
   return std::make_unique<OrdinatesTransportGl>(grid, options);
 }
 
-/// Schemes that carry light from sides to sides.
-class SidesOnGpu : public FrameVolume {
+/// Voxels and light in, for every scheme.
+class LitVoxels {
  public:
-  SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+  LitVoxels(const Scene& scene, const VolumeOptions& options)
       : scene_(scene),
-        rules_(bounce_rules(options, largest_albedo(scene))),
         voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
-        bounces_(make_transport_gl(voxelization_.voxels().grid, options.scheme)),
-        gather_(size),
         emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
 
-  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
-           const Camera& camera, gl::PassTimer& timer) override {
-    const VoxelGridGl& voxels = voxelization_.voxels();
+  /// @param emission_apart  SideFluxGl::inject_emitters.
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, bool emission_apart,
+           gl::PassTimer& timer) {
     voxelization_.run(buffers, timer);
-    flux_.begin(voxels);
-    flux_.inject_emitters(voxels, emitters_, timer);
-    inject_.run(voxels, maps, scene_, flux_, timer);
-    bounce_report_ = bounces_.run(voxels, flux_, !emitters_.empty(), rules_, timer);
-    irradiance_.run(voxels, flux_, bounces_, timer);
-    gather_.run(gbuffer, camera, voxels, irradiance_.direct(), irradiance_.indirect(), timer);
+    flux_.begin(voxels());
+    flux_.inject_emitters(voxels(), emitters_, timer, emission_apart);
+    inject_.run(voxels(), maps, scene_, flux_, timer);
   }
-  const gl::Texture& direct() const override { return gather_.direct(); }
-  const gl::Texture& indirect() const override { return gather_.indirect(); }
+  const VoxelGridGl& voxels() const { return voxelization_.voxels(); }
+  const SideFluxGl& flux() const { return flux_; }
+  bool emits() const { return !emitters_.empty(); }
+  size_t bytes() const { return voxelization_.bytes() + flux_.bytes(); }
 
-  VolumeReport report() const override {
+  VolumeReport report(const BounceReport& bounces) const {
     VolumeReport r;
     r.on_gpu = true;
-    r.grid = voxelization_.voxels().grid.cells;
-    r.sides = voxelization_.voxels().side_count.download<std::uint32_t>(1)[0];
-    r.bounces = bounce_report_;
+    r.grid = voxels().grid.cells;
+    r.sides = voxels().side_count.download<std::uint32_t>(1)[0];
+    r.bounces = bounces;
     r.lost = flux_.lost();
     for (const gl::Buffer* flux : {&flux_.emitted(), &flux_.punctual()}) {
       for (glm::vec4 f : flux->download<glm::vec4>(r.sides)) r.injected += glm::vec3(f);
     }
-    r.memory_bytes = voxelization_.bytes() + flux_.bytes() + bounces_.bytes() + irradiance_.bytes() + gather_.bytes();
     return r;
   }
 
  private:
   const Scene& scene_;
-  BounceRules rules_;
   SlicedVoxelization voxelization_;
   SideFluxGl flux_;
   InjectReflectiveShadowMap inject_;
+  std::vector<FluxSample> emitters_;
+};
+
+/// Schemes that carry light from sides to sides.
+class SidesOnGpu : public FrameVolume {
+ public:
+  SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+      : rules_(bounce_rules(options, largest_albedo(scene))),
+        lit_(scene, options),
+        bounces_(make_transport_gl(lit_.voxels().grid, options.scheme)),
+        gather_(size) {}
+
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+           const Camera& camera, gl::PassTimer& timer) override {
+    lit_.run(buffers, maps, true, timer);
+    bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits(), rules_, timer);
+    irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
+    gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), timer);
+  }
+  const gl::Texture& direct() const override { return gather_.direct(); }
+  const gl::Texture& indirect() const override { return gather_.indirect(); }
+  VolumeReport report() const override {
+    VolumeReport r = lit_.report(bounce_report_);
+    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + gather_.bytes();
+    return r;
+  }
+
+ private:
+  BounceRules rules_;
+  LitVoxels lit_;
   BouncesGl bounces_;
   SideIrradianceGl irradiance_;
   VolumeGather gather_;
-  std::vector<FluxSample> emitters_;
   BounceReport bounce_report_;
 };
 
@@ -81,74 +101,50 @@ class SidesOnGpu : public FrameVolume {
 class PulseOnGpu : public FrameVolume {
  public:
   PulseOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : scene_(scene),
-        options_(options),
-        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
-        cells_(voxelization_.voxels().grid),
-        pulse_(voxelization_.voxels().grid, options.scheme),
-        gather_(size, options.scheme.sh_order),
-        emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {
+      : options_(options),
+        lit_(scene, options),
+        cells_(lit_.voxels().grid),
+        pulse_(lit_.voxels().grid, options.scheme),
+        gather_(size, options.scheme.sh_order) {
     bounce_rules(options, 0.0f);  // says what these schemes cannot do
   }
 
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
            const Camera& /*camera*/, gl::PassTimer& timer) override {
-    const VoxelGridGl& voxels = voxelization_.voxels();
-    voxelization_.run(buffers, timer);
+    lit_.run(buffers, maps, false, timer);
     cells_.run(buffers, timer);
-    flux_.begin(voxels);
-    flux_.inject_emitters(voxels, emitters_, timer, false);
-    inject_.run(voxels, maps, scene_, flux_, timer);
-    bounce_report_ = pulse_.run(voxels, cells_.normal_occupancy(), cells_.albedo(), flux_.punctual(),
+    bounce_report_ = pulse_.run(lit_.voxels(), cells_.normal_occupancy(), cells_.albedo(), lit_.flux().punctual(),
                                 options_.iterations.value_or(VolumeOptions::kPulseIterations), timer);
     const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
-    gather_.run(gbuffer, voxels, pulse_.radiance(), occupied_only ? &cells_.normal_occupancy() : nullptr, timer);
+    gather_.run(gbuffer, lit_.voxels(), pulse_.radiance(), occupied_only ? &cells_.normal_occupancy() : nullptr, timer);
   }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
-
   VolumeReport report() const override {
-    VolumeReport r;
-    r.on_gpu = true;
-    r.grid = voxelization_.voxels().grid.cells;
-    r.sides = voxelization_.voxels().side_count.download<std::uint32_t>(1)[0];
-    r.bounces = bounce_report_;
-    r.lost = flux_.lost();
-    r.injected = bounce_report_.sent;
-    r.memory_bytes = voxelization_.bytes() + cells_.bytes() + flux_.bytes() + pulse_.bytes() + gather_.bytes();
+    VolumeReport r = lit_.report(bounce_report_);
+    r.memory_bytes = lit_.bytes() + cells_.bytes() + pulse_.bytes() + gather_.bytes();
     return r;
   }
 
  private:
-  const Scene& scene_;
   VolumeOptions options_;
-  SlicedVoxelization voxelization_;
+  LitVoxels lit_;
   CellVolumesGl cells_;
-  SideFluxGl flux_;
-  InjectReflectiveShadowMap inject_;
   PulseVolumeGl pulse_;
   RadianceGather gather_;
-  std::vector<FluxSample> emitters_;
   BounceReport bounce_report_;
 };
 
-/// @throws Error(over_limit) naming both figures. What sides take is estimated from the scene's area.
-void refuse_above_limit(const Scene& scene, const VolumeOptions& options) {
-  if (!options.memory_limit) return;
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
-  const size_t expected = voxelization_bytes(grid, scene) + bytes_expected_cpu(scene, grid, options.scheme);
-  if (expected <= *options.memory_limit) return;
-  throw Error(
-      ExitCode::over_limit,
-      fmt::format("--grid {}: the volume needs about {:.0f} MiB on the GPU, --memory-limit allows {:.0f}; use a "
-                  "smaller --grid",
-                  options.grid_cells, double(expected) / 1048576.0, double(*options.memory_limit) / 1048576.0));
-}
-
 }  // namespace
 
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu) {
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const size_t of_twin = bytes_expected_cpu(scene, grid, options.scheme);
+  return on_gpu ? of_twin + voxelization_bytes(grid, scene) : of_twin;
+}
+
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
-  refuse_above_limit(scene, options);
+  refuse_above_limit(options, volume_bytes_expected(scene, options, true), "GPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnGpu>(scene, options, size);
   return std::make_unique<PulseOnGpu>(scene, options, size);
 }

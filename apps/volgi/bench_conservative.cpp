@@ -2,13 +2,11 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstring>
 #include <vector>
 
+#include "apps/volgi/bench_timing.h"
 #include "propagation/transport_conservative_cpu.h"
 
 namespace volgi::app {
@@ -16,18 +14,6 @@ namespace volgi::app {
 namespace {
 
 using Powers = std::vector<glm::vec4>;
-
-template <typename F>
-double time_ms(const F& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> times) {
-  std::nth_element(times.begin(), times.begin() + std::ptrdiff_t(times.size() / 2), times.end());
-  return times[times.size() / 2];
-}
 
 /// Closed box of cells^3, grey walls one side a face.
 VoxelGrid closed_box(int cells) {
@@ -51,22 +37,6 @@ VoxelGrid closed_box(int cells) {
     }
   }
   return VoxelGrid(grid, std::move(sides));
-}
-
-/// Copies that many bytes with all threads, in pieces of the size of a leaf.
-double copy_ms(size_t bytes, int repeats) {
-  constexpr size_t kPiece = 24 << 10;
-  const size_t pieces = (bytes + kPiece - 1) / kPiece;
-  std::vector<char> from(pieces * kPiece, 1), to(pieces * kPiece, 2);
-  std::vector<double> times;
-  for (int i = 0; i <= repeats; ++i) {
-    times.push_back(time_ms([&] {
-      tbb::parallel_for(size_t(0), pieces, [&](size_t p) { std::memcpy(&to[p * kPiece], &from[p * kPiece], kPiece); });
-    }));
-    from.swap(to);
-  }
-  times.erase(times.begin());
-  return median(times);
 }
 
 }  // namespace
@@ -99,22 +69,7 @@ nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
           {"bytes", 2 * read}};
 }
 
-nlohmann::json bench_sparse(const VoxelGrid& voxels, int iterations) {
-  constexpr size_t kSides = 300;
-  const Grid& grid = voxels.grid();
-  Powers sent(voxels.side_count(), glm::vec4(0.0f));
-  if (sent.empty()) return nullptr;
-  // Those nearest to the first: one corner of the scene.
-  std::vector<std::pair<int, size_t>> by_distance;
-  const glm::ivec3 first = shared::cell_coord(grid, voxels.sides().front().cell);
-  for (size_t i = 0; i < sent.size(); ++i) {
-    const glm::ivec3 d = shared::cell_coord(grid, voxels.sides()[i].cell) - first;
-    by_distance.emplace_back(d.x * d.x + d.y * d.y + d.z * d.z, i);
-  }
-  std::sort(by_distance.begin(), by_distance.end());
-  by_distance.resize(std::min(by_distance.size(), kSides));
-  for (const auto& [distance, i] : by_distance) sent[i] = glm::vec4(1.0f, 0.8f, 0.6f, 0.0f);
-
+nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations) {
   Powers received(sent.size(), glm::vec4(0.0f));
   ConservativeTransport transport(voxels, 1);
   const auto run = [&](bool dense) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "voxel/voxel_grid.h"
 
@@ -10,9 +11,9 @@ namespace volgi::app {
 /// @return cells, threads, iterations, ms_per_iteration (median over repeats), copy_ms, ratio, bytes (of a pass).
 nlohmann::json bench_conservative(int cells, int iterations, int repeats);
 
-/// Sparse leaves against all leaves in every pass, over a pulse's first passes. Light starts at up to 300 sides around
-/// the first one.
+/// Sparse leaves against all leaves in every pass, over a pulse's first passes.
+/// @param sent  power per side [W].
 /// @return sparse_ms, dense_ms (per pass), speedup, leaves, lit_leaves (after the last pass), iterations.
-nlohmann::json bench_sparse(const VoxelGrid& voxels, int iterations);
+nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations);
 
 }  // namespace volgi::app

@@ -1,14 +1,10 @@
 #include "apps/volgi/bench_propagation.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstring>
 
+#include "apps/volgi/bench_timing.h"
 #include "propagation/bounces.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/voxelize_cpu.h"
@@ -18,26 +14,8 @@ namespace volgi::app {
 namespace {
 
 constexpr float kAlbedo = 0.7f;
-constexpr int kLargestConservative = 32;
-constexpr double kError = 0.005;  // of what the error is asked to be under
-
-double now_ms() {
-  using Clock = std::chrono::steady_clock;
-  return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
-}
-
-template <typename F>
-double median_ms(int repeats, const F& run) {
-  std::vector<double> times;
-  run();  // warm-up
-  for (int i = 0; i < repeats; ++i) {
-    const double start = now_ms();
-    run();
-    times.push_back(now_ms() - start);
-  }
-  std::nth_element(times.begin(), times.begin() + repeats / 2, times.end());
-  return times[size_t(repeats / 2)];
-}
+constexpr int kLargestConservative = 32;  // cells on an edge
+constexpr double kError = 0.005;          // of what the error is asked to be under
 
 int add_material(Scene& scene, float albedo, float radiance) {
   Material m;
@@ -173,18 +151,8 @@ double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// Bytes per second of a parallel copy of `bytes` [GB/s], read and write counted.
-double copy_gb_per_s(size_t bytes, int repeats) {
-  std::vector<char> from(bytes, 1), to(bytes, 0);
-  constexpr size_t kChunk = 1 << 16;
-  const double ms = median_ms(repeats, [&] {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, (bytes + kChunk - 1) / kChunk), [&](const auto& range) {
-      const size_t first = range.begin() * kChunk;
-      std::memcpy(to.data() + first, from.data() + first, std::min(bytes, range.end() * kChunk) - first);
-    });
-  });
-  return 2.0 * double(bytes) / (ms * 1e6);
-}
+/// Speed of copying [GB/s], read and write counted.
+double copy_gb_per_s(size_t bytes, int repeats) { return 2.0 * double(bytes) / (copy_ms(bytes, repeats) * 1e6); }
 
 double pass_ms(const Box& box, const SchemeOptions& scheme, int passes, int repeats) {
   const auto transport = make_transport(box.voxels, scheme);

@@ -3,27 +3,12 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/info.h>
 
-#include <algorithm>
-#include <chrono>
-
+#include "apps/volgi/bench_timing.h"
 #include "voxel/voxelize_cpu.h"
 
 namespace volgi::app {
 
 namespace {
-
-template <class Work>
-double time_ms(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> times) {
-  std::sort(times.begin(), times.end());
-  const size_t half = times.size() / 2;
-  return times.size() % 2 == 1 ? times[half] : 0.5 * (times[half - 1] + times[half]);
-}
 
 /// The scene as meshToVolume takes it: points in index space.
 struct IndexMesh {

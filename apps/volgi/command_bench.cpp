@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/log.h"
+#include "propagation/volume_cpu.h"
 #include "screen/frame.h"
-#include "voxel/voxelize_cpu.h"
 
 namespace volgi::app {
 
@@ -98,7 +98,12 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
   r = bench_propagation(largest_grid, frames);
   r["conservative_over_copy"] = bench_conservative(largest_grid, 16, frames);
   const Scene atrium = scene("atrium");
-  r["sparse_over_dense"] = bench_sparse(voxelize_cpu(atrium, make_grid(atrium, largest_grid)), 16);
+  VolumeOptions lit;
+  lit.grid_cells = largest_grid;
+  VolumeCpu volume(atrium, lit);
+  volume.voxelize();
+  volume.light_in();  // the sun's light, as the paper's figure has it
+  r["sparse_over_dense"] = bench_sparse(volume.voxels(), volume.flux().punctual, 16);
   if (json) return;
   fmt::print("{}", propagation_table(r));
   const auto& copy = r["conservative_over_copy"];

@@ -66,6 +66,11 @@ int RenderCommand::run() const {
   gl::Context context(device);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
 
+  if (!quiet && options.gi == screen::GiMode::volume && loaded.triangle_count() > 0) {
+    const bool on_gpu = screen::runs_on_gpu(options.backend);
+    fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
+               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);
+  }
   screen::Frame picture(loaded, options);
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);

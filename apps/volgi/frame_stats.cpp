@@ -50,10 +50,11 @@ std::string pass_table(const nlohmann::json& stats) {
   text += fmt::format("  {:<38} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
                       stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum);
   if (stats["grid"][0] != 0) {
-    text += fmt::format("  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, {:.1f} MiB on the GPU\n",
-                        stats["grid"][0].get<int>(), stats["grid"][1].get<int>(), stats["grid"][2].get<int>(),
-                        stats["sides"].get<unsigned>(), stats["orders"].get<int>(), stats["iterations"].get<int>(),
-                        stats["memory_bytes"].get<double>() / 1048576.0);
+    text += fmt::format(
+        "  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, volume on the {}, {:.1f} MiB in all\n",
+        stats["grid"][0].get<int>(), stats["grid"][1].get<int>(), stats["grid"][2].get<int>(),
+        stats["sides"].get<unsigned>(), stats["orders"].get<int>(), stats["iterations"].get<int>(),
+        stats["backend"] == "gpu" ? "GPU" : "CPU", stats["memory_bytes"].get<double>() / 1048576.0);
   }
   return text;
 }

@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/gtc/type_precision.hpp>
 
 #include "core/error.h"
+#include "core/mipmaps.h"
 
 namespace volgi::gl {
 namespace {
@@ -82,18 +84,25 @@ GLenum gl_min_filter(const Sampler& s) {
   return s.mipmap_nearest ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR;
 }
 
+/// Linear light in 16 bits, levels of our own (core/mipmaps.h).
 Texture upload_texture(const TextureImage& image, const Sampler& sampler, bool srgb) {
-  const int levels = sampler.mipmap ? 1 + int(std::floor(std::log2(std::max(image.width, image.height)))) : 1;
-  Texture t = Texture::make_2d(srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, image.width, image.height, levels);
-  glTextureSubImage2D(t.id(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
-  if (levels > 1) glGenerateTextureMipmap(t.id());
+  std::vector<MipLevel> chain = mip_chain(image, srgb);
+  if (!sampler.mipmap) chain.resize(1);
+  Texture t = Texture::make_2d(GL_RGBA16, image.width, image.height, int(chain.size()));
+  std::vector<glm::u16vec4> texels;
+  for (size_t level = 0; level < chain.size(); ++level) {
+    texels.clear();
+    for (const glm::vec4& v : chain[level].texels) texels.emplace_back(v * 65535.0f + 0.5f);
+    glTextureSubImage2D(t.id(), GLint(level), 0, 0, chain[level].width, chain[level].height, GL_RGBA, GL_UNSIGNED_SHORT,
+                        texels.data());
+  }
   t.filter(gl_min_filter(sampler), sampler.magnify_nearest ? GL_NEAREST : GL_LINEAR);
   t.wrap(gl_wrap(sampler.wrap_s), gl_wrap(sampler.wrap_t));
   return t;
 }
 
 size_t texture_bytes(const Texture& t, bool mipmapped) {
-  const size_t base = size_t(t.size().x) * size_t(t.size().y) * 4;
+  const size_t base = size_t(t.size().x) * size_t(t.size().y) * 8;
   return mipmapped ? base * 4 / 3 : base;
 }
 

@@ -50,17 +50,39 @@ struct TexelRay {
   glm::vec3 power;  // before the range window [W]
 };
 
+/// Mean of a spot's falloff over the texel, 4 x 4 points: a cone's edge is often thinner than a texel.
+float mean_falloff(const Layer& layer, glm::ivec2 texel) {
+  constexpr int kPoints = 4;
+  float sum = 0.0f;
+  for (int i = 0; i < kPoints * kPoints; ++i) {
+    const glm::vec2 in_texel = (glm::vec2(i % kPoints, i / kPoints) + 0.5f) / float(kPoints);
+    const glm::vec2 uv = (glm::vec2(texel) + in_texel) * (2.0f / float(layer.resolution)) - 1.0f;
+    const glm::vec3 to = shared::rsm_position_from_uvz(layer.view, glm::vec3(uv, 1.0f)) - layer.view.origin;
+    sum += shared::spot_falloff(layer.light, glm::normalize(to));
+  }
+  return sum / float(kPoints * kPoints);
+}
+
+/// Where in its texel a ray goes: not the middle, so that edges of objects along rows of texels are not met or missed
+/// by a whole row at once (0.3 % of the light of cornell at 256 texels). An additive recurrence (Roberts 2018: powers
+/// of 1/1.3247..., the plastic number), even over any block of texels.
+glm::vec2 place_in_texel(glm::ivec2 texel) {
+  const double n = double(texel.x) + 5741.0 * double(texel.y);  // rows far apart in the sequence
+  return {float(glm::fract(0.7548776662466927 * n)), float(glm::fract(0.5698402909980532 * n))};
+}
+
 TexelRay ray_through(const Layer& layer, glm::ivec2 texel) {
-  const glm::vec2 uv = (glm::vec2(texel) + 0.5f) * (2.0f / float(layer.resolution)) - 1.0f;
+  const glm::vec2 uv = (glm::vec2(texel) + place_in_texel(texel)) * (2.0f / float(layer.resolution)) - 1.0f;
   const shared::ReflectiveShadowLayer& view = layer.view;
-  const float measure = shared::rsm_texel_measure(view, layer.resolution, uv.x, uv.y);
+  const glm::vec2 middle = (glm::vec2(texel) + 0.5f) * (2.0f / float(layer.resolution)) - 1.0f;
+  const float measure = shared::rsm_texel_measure(view, layer.resolution, middle.x, middle.y);
   TexelRay ray{view.origin, view.forward, layer.light.intensity * measure};
   if (view.directional != 0) {
     ray.origin = shared::rsm_position_from_uvz(view, glm::vec3(uv, 0.0f));
     return ray;
   }
   ray.direction = glm::normalize(shared::rsm_position_from_uvz(view, glm::vec3(uv, 1.0f)) - view.origin);
-  if (layer.light.type == LIGHT_SPOT) ray.power *= shared::spot_falloff(layer.light, ray.direction);
+  if (layer.light.type == LIGHT_SPOT) ray.power *= mean_falloff(layer, texel);
   return ray;
 }
 

@@ -22,7 +22,7 @@ uniform mat3 material_base_color_transform;
 uniform mat3 material_metallic_transform;
 uniform mat3 material_emissive_transform;
 
-layout(binding = 0) uniform sampler2D material_base_color_texture;  // sRGB: decoded by the sampler
+layout(binding = 0) uniform sampler2D material_base_color_texture;  // linear light (core/mipmaps.h)
 layout(binding = 1) uniform sampler2D material_metallic_texture;
 layout(binding = 2) uniform sampler2D material_emissive_texture;
 

@@ -1,0 +1,33 @@
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+namespace volgi::app {
+
+/// Wall time of one run [ms].
+template <typename F>
+double time_ms(const F& run) {
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+inline double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Median of `repeats` runs after one that warms up [ms].
+template <typename F>
+double median_ms(int repeats, const F& run) {
+  run();
+  std::vector<double> times;
+  for (int i = 0; i < repeats; ++i) times.push_back(time_ms(run));
+  return median(times);
+}
+
+/// Time in which all threads together copy `bytes`, median [ms].
+double copy_ms(size_t bytes, int repeats);
+
+}  // namespace volgi::app
