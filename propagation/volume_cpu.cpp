@@ -116,8 +116,7 @@ void VolumeCpu::light_in() {
   const std::vector<FluxSample> pieces = emitter_pieces(scene_, grid_);
   emits_ = !pieces.empty();
   deposit(voxels_, pieces, flux_.emitted, flux_.lost);
-  if (embree_)
-    deposit(voxels_, light_flux(*embree_, light_texels(grid_), 0.5f * grid_.cell_size_m), flux_.punctual, flux_.lost);
+  if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_)), flux_.punctual, flux_.lost);
 }
 
 void VolumeCpu::propagate() {

@@ -12,13 +12,6 @@ namespace volgi {
 
 namespace {
 
-constexpr int kGroup = 4;  // texels on the edge of what is merged; as inject_reflective_shadow_map.comp.glsl
-
-// Two texels are of one plane when their normals part by less than 2.6 degrees, and one lies within 1/25 of the merging
-// distance of the other's plane.
-constexpr float kSameNormal = 0.999f;
-constexpr float kSamePlane = 0.04f;
-
 struct Layer {
   shared::PunctualLight light;
   shared::ReflectiveShadowLayer view;
@@ -102,57 +95,19 @@ FluxSample texel_flux(const EmbreeScene& embree, const Layer& layer, glm::ivec2 
   return {at.position, front ? at.geometric_normal : -at.geometric_normal, ray.power * window * at.albedo};
 }
 
-/// Texels of a group that lie on the first one's plane, added up.
-class Merge {
- public:
-  explicit Merge(float within_m) : within_m_(within_m) {}
-
-  /// @return false where the sample has to stay by itself.
-  bool add(const FluxSample& sample) {
-    if (within_m_ <= 0.0f) return false;
-    if (count_ == 0) first_ = sample;
-    const glm::vec3 offset = sample.position - first_.position;
-    if (glm::dot(sample.normal, first_.normal) < kSameNormal || glm::length(offset) > within_m_ ||
-        std::abs(glm::dot(offset, first_.normal)) > kSamePlane * within_m_) {
-      return false;
-    }
-    offsets_ += offset;
-    flux_ += sample.flux;
-    ++count_;
-    return true;
-  }
-  void put(std::vector<FluxSample>& samples) const {
-    if (count_ > 0) samples.push_back({first_.position + offsets_ / float(count_), first_.normal, flux_});
-  }
-
- private:
-  float within_m_;
-  FluxSample first_{};
-  glm::vec3 offsets_{0.0f}, flux_{0.0f};
-  int count_ = 0;
-};
-
-/// One row of groups of a layer.
-std::vector<FluxSample> row_flux(const EmbreeScene& embree, const Layer& layer, int row, float merge_within_m) {
+/// One row of texels of a layer.
+std::vector<FluxSample> row_flux(const EmbreeScene& embree, const Layer& layer, int row) {
   std::vector<FluxSample> samples;
-  const int last_y = std::min((row + 1) * kGroup, layer.resolution);
-  for (int x = 0; x < layer.resolution; x += kGroup) {
-    Merge merge(merge_within_m);
-    const int last_x = std::min(x + kGroup, layer.resolution);
-    for (glm::ivec2 texel(x, row * kGroup); texel.y < last_y; ++texel.y) {
-      for (texel.x = x; texel.x < last_x; ++texel.x) {
-        const FluxSample sample = texel_flux(embree, layer, texel);
-        if (sample.flux != glm::vec3(0.0f) && !merge.add(sample)) samples.push_back(sample);
-      }
-    }
-    merge.put(samples);
+  for (int x = 0; x < layer.resolution; ++x) {
+    const FluxSample sample = texel_flux(embree, layer, {x, row});
+    if (sample.flux != glm::vec3(0.0f)) samples.push_back(sample);
   }
   return samples;
 }
 
 }  // namespace
 
-std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge, float merge_within_m) {
+std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge) {
   assert(texels_on_edge >= 16);
   struct Row {
     const Layer* layer;
@@ -161,12 +116,11 @@ std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge
   const std::vector<Layer> layers = layers_of(embree.scene(), texels_on_edge);
   std::vector<Row> rows;
   for (const Layer& layer : layers) {
-    for (int row = 0; row * kGroup < layer.resolution; ++row) rows.push_back({&layer, row});
+    for (int row = 0; row < layer.resolution; ++row) rows.push_back({&layer, row});
   }
   std::vector<std::vector<FluxSample>> found(rows.size());
-  oneapi::tbb::parallel_for(size_t(0), rows.size(), [&](size_t i) {
-    found[i] = row_flux(embree, *rows[i].layer, rows[i].row, merge_within_m);
-  });
+  oneapi::tbb::parallel_for(size_t(0), rows.size(),
+                            [&](size_t i) { found[i] = row_flux(embree, *rows[i].layer, rows[i].row); });
   std::vector<FluxSample> samples;
   for (const std::vector<FluxSample>& row : found) samples.insert(samples.end(), row.begin(), row.end());
   return samples;

@@ -13,9 +13,6 @@ namespace volgi {
 /// ray with probability alpha (hashed). Cost: one ray a texel, in parallel; the result does not depend on threads.
 /// @param texels_on_edge   of a spot's layer; a point light's faces have half, a sun's layer twice as many. At
 /// least 16.
-/// @param merge_within_m   of 4 x 4 texels, those on the first one's plane and so near to it become one sample with all
-///                         their power, in their middle: a sixteenth of the samples where surfaces are smooth. Half the
-///                         edge of a cell is what the twin does; 0: none.
-std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge, float merge_within_m = 0.0f);
+std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge);
 
 }  // namespace volgi
