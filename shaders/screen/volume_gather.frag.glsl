@@ -50,8 +50,9 @@ void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool c
   g.weight += here.weight;
 }
 
-// `open`: bits of reachable_cells around the cell that the point lies in; within these 27 cells only such take part, so
-// that no pixel of a pillar looks at the dark inside of its other wall.
+const uint ANY_CELL = 0xffffffffu;
+
+// `open`: bits of reachable_cells around the cell that the point lies in, and no other cells; or ANY_CELL.
 Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_plane, int reach, uint open) {
   Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
   vec3 low = floor(point - 0.5);
@@ -59,19 +60,22 @@ Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_p
   for (int z = -reach; z <= 1 + reach; ++z) {
     for (int y = -reach; y <= 1 + reach; ++y) {
       for (int x = -reach; x <= 1 + reach; ++x) {
-        ivec3 from_own = ivec3(low) + ivec3(x, y, z) - ivec3(floor(point)) + 1;
-        if (all(greaterThanEqual(from_own, ivec3(0))) && all(lessThan(from_own, ivec3(3))) &&
-            ((open >> (from_own.x + 3 * from_own.y + 9 * from_own.z)) & 1u) == 0u) {
-          continue;
+        ivec3 cell = ivec3(low) + ivec3(x, y, z);
+        ivec3 bit = cell - ivec3(floor(point)) + 1;
+        if (open != ANY_CELL) {
+          if (any(lessThan(bit, ivec3(0))) || any(greaterThan(bit, ivec3(2)))) continue;
+          if (((open >> (bit.x + 3 * bit.y + 9 * bit.z)) & 1u) == 0u) continue;
         }
         vec3 d = abs(vec3(x, y, z) - t);
         vec3 w = max(vec3(1.0 + float(reach)) - d, vec3(0.0));
-        gather_cell(ivec3(low) + ivec3(x, y, z), point, normal, least_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
+        gather_cell(cell, point, normal, least_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
       }
     }
   }
   return g;
 }
+
+bool is_lit(Gathered g) { return g.weight > 0.0 && any(greaterThan(g.direct + g.indirect, vec3(0.0))); }
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -88,15 +92,20 @@ void main() {
   if (any(lessThan(point, vec3(-0.25))) || any(greaterThan(point, vec3(grid.cells) + 0.25))) return;  // faces the dark outside
   // A surface too small or too tilted for the grid to show takes what is near, then what faces its way at
   // all, at last (rims of boards, thin rods) whatever surface is near.
-  const uint all_open = 0x7ffffffu;
-  Gathered g = gather_around(point, normal, 0.70710678, true, 0, all_open);
-  if (g.weight == 0.0) {
-    uint open = cell_inside(grid, ivec3(floor(point))) ? reachable_cells(ivec3(floor(point))) : all_open;
-    g = gather_around(point, normal, 0.70710678, true, 1, open);
-    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, open);
-    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, open);
-    if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, open);
+  Gathered g = gather_around(point, normal, 0.70710678, true, 0, ANY_CELL);
+  if (!is_lit(g) && cell_inside(grid, ivec3(floor(point)))) {
+    // The sealed inside of a pillar a cell wide faces the same way as its outside: what can be reached from the front
+    // comes first. A sealed room stays dark: nothing lit can be reached.
+    uint open = reachable_cells(ivec3(floor(point)));
+    Gathered front = gather_around(point, normal, 0.70710678, true, 1, open);
+    if (!is_lit(front)) front = gather_around(point, normal, 0.0, true, 1, open);
+    if (!is_lit(front)) front = gather_around(point, normal, 0.0, false, 1, open);
+    if (is_lit(front)) g = front;
   }
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, ANY_CELL);
   if (g.weight == 0.0) return;
   vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / 3.14159265;
   direct_radiance = vec4(reflectance * g.direct / g.weight, 1.0);
