@@ -57,9 +57,14 @@ glm::vec3 reflected(const PathVertex& vertex, glm::vec3 to_light) {
 }  // namespace
 
 PathIntegrator::PathIntegrator(const Scene& scene) : scene_(&scene), rays_(scene), emitters_(scene) {
-  for (const Light& light : scene.lights) lights_.push_back(to_shared(light));
+  set_lights(scene.lights);
   for (const Mesh& mesh : scene.meshes)
     has_blending_ |= scene.materials[static_cast<size_t>(mesh.material)].alpha_mode == AlphaMode::blend;
+}
+
+void PathIntegrator::set_lights(const std::vector<Light>& lights) {
+  lights_.clear();
+  for (const Light& light : lights) lights_.push_back(to_shared(light));
 }
 
 bool PathIntegrator::next_vertex(const Ray& ray, PathVertex& vertex) const {

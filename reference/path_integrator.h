@@ -48,12 +48,17 @@ class PathIntegrator {
   /// True when a ray may pass a surface by chance, so that the first hit differs between samples.
   bool has_blending() const { return has_blending_; }
 
+  /// What `vertex` reflects of every punctual light, a shadow ray each.
+  glm::vec3 all_punctual(const PathVertex& vertex, PathSampler& sampler) const;
+  const EmbreeScene& rays() const { return rays_; }
+  /// Other punctual lights than the scene's, such as the same ones at another time. Not while paths are traced.
+  void set_lights(const std::vector<Light>& lights);
+
  private:
   bool next_vertex(const Ray& ray, PathVertex& vertex) const;
   glm::vec3 punctual_light(const PathVertex& vertex, const shared::PunctualLight& light, glm::vec3& to_light,
                            float& distance) const;
   bool visible(const PathVertex& vertex, glm::vec3 to_light, float distance, std::uint32_t alpha_seed) const;
-  glm::vec3 all_punctual(const PathVertex& vertex, PathSampler& sampler) const;
   glm::vec3 one_punctual(const PathVertex& vertex, PathSampler& sampler) const;
   glm::vec3 emitters(const PathVertex& vertex, PathSampler& sampler) const;
   glm::vec3 gather(const PathVertex& vertex, bool first, PathSampler& sampler) const;

@@ -1,16 +1,11 @@
 #include "reference/path_tracer.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
+#include <algorithm>
 #include <array>
 #include <cassert>
-#include <cmath>
-#include <memory>
 
-#include "core/progress.h"
 #include "reference/path_integrator.h"
+#include "reference/picture_layers.h"
 
 namespace volgi {
 namespace {
@@ -22,18 +17,6 @@ struct HalfSum {
   glm::dvec3 direct{0.0};
   glm::dvec3 indirect{0.0};
 };
-
-ReferencePicture empty_picture(const PathTracerOptions& options) {
-  ReferencePicture p;
-  p.light = options.light;
-  const Image black(options.size.x, options.size.y);
-  for (Image* image : {&p.color, &p.direct, &p.half_a, &p.half_b, &p.direct_half_a, &p.direct_half_b, &p.position,
-                       &p.normal, &p.albedo})
-    *image = black;
-  p.id.assign(black.pixels.size(), 0.0f);
-  p.depth.assign(black.pixels.size(), 0.0f);
-  return p;
-}
 
 glm::dvec3 asked_for(const HalfSum& sum, AskedLight light) {
   if (light == AskedLight::direct) return sum.direct;
@@ -53,17 +36,16 @@ class PictureTracer {
         camera_(camera),
         options_(options),
         integrator_(scene),
-        view_axis_(-glm::normalize(glm::vec3(camera.world_from_camera[2]))),
         samples_per_half_(std::max(1, (options.samples_per_pixel + 1) / 2)),
         max_bounces_(options.light == AskedLight::direct ? 0 : options.max_bounces.value_or(PathIntegrator::unlimited)),
-        picture_(empty_picture(options)) {}
+        picture_(empty_picture(options.size, options.light)) {}
 
   void trace_pixel(int x, int y) {
     const glm::vec2 corner(x, y);
     const CameraRay ray = camera_ray(camera_, corner + 0.5f, options_.size);
     PathVertex centre;
     const bool hit = integrator_.first_vertex(ray, hash(options_.seed, 0x5eedu), centre);
-    if (hit) write_surface(x, y, ray, centre);
+    if (hit) write_first_hit(picture_, {x, y}, scene_, camera_, ray, centre);
     const bool same_first_vertex = options_.filter == PathTracerOptions::Filter::point && !integrator_.has_blending();
     if (same_first_vertex && !hit) return;
     std::array<HalfSum, 2> halves;
@@ -92,15 +74,6 @@ class PictureTracer {
     sum.indirect += glm::dvec3(radiance.indirect);
   }
 
-  void write_surface(int x, int y, const CameraRay& ray, const PathVertex& vertex) {
-    picture_.position.at(x, y) = glm::vec3(glm::dvec3(vertex.surface.position) + scene_.world_origin);
-    picture_.normal.at(x, y) = vertex.shading_normal;
-    picture_.albedo.at(x, y) = vertex.surface.albedo;
-    const size_t i = static_cast<size_t>(y) * static_cast<size_t>(options_.size.x) + static_cast<size_t>(x);
-    picture_.id[i] = static_cast<float>(scene_.meshes[vertex.triangle.mesh].object_id);
-    picture_.depth[i] = vertex.distance * glm::dot(ray.direction, view_axis_);
-  }
-
   void write_light(int x, int y, const std::array<HalfSum, 2>& halves) {
     const double scale = 1.0 / samples_per_half_;
     const glm::dvec3 a = asked_for(halves[0], options_.light) * scale, b = asked_for(halves[1], options_.light) * scale;
@@ -117,7 +90,6 @@ class PictureTracer {
   const Camera& camera_;
   const PathTracerOptions& options_;
   PathIntegrator integrator_;
-  glm::vec3 view_axis_;
   int samples_per_half_;
   int max_bounces_;
   ReferencePicture picture_;
@@ -127,23 +99,8 @@ class PictureTracer {
 
 ReferencePicture path_trace(const Scene& scene, const Camera& camera, const PathTracerOptions& options) {
   assert(options.size.x > 0 && options.size.y > 0 && options.samples_per_pixel > 0);
-  constexpr int tile = 16;
-  std::unique_ptr<tbb::global_control> limit;
-  if (options.threads > 0)
-    limit =
-        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, size_t(options.threads));
   PictureTracer tracer(scene, camera, options);
-  const int rows = (options.size.y + tile - 1) / tile, columns = (options.size.x + tile - 1) / tile;
-  Progress progress("reference", static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns));
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(0, rows * columns, [&](int index) {
-      const int x0 = index % columns * tile, y0 = index / columns * tile;
-      for (int y = y0; y < std::min(y0 + tile, options.size.y); ++y)
-        for (int x = x0; x < std::min(x0 + tile, options.size.x); ++x) tracer.trace_pixel(x, y);
-      progress.advance();
-    });
-  });
+  for_each_pixel(options.size, options.threads, "reference", [&](int x, int y) { tracer.trace_pixel(x, y); });
   return tracer.take();
 }
 

@@ -14,13 +14,31 @@ bool has_emission(const Scene& scene) {
   return false;
 }
 
-/// Only what the picture shows is computed: direct light alone needs no volume, unless emitters light the scene by it.
+bool direct_only(const FrameOptions& options) {
+  return options.light == LightPart::direct || options.volume.bounces == 0;
+}
+
+/// Only what the picture shows is computed: direct light alone needs nobody to carry it, unless emitters light the
+/// scene.
+bool needs_carrier(const Scene& scene, const FrameOptions& options) {
+  if (scene.triangle_count() == 0) return false;
+  return has_emission(scene) || (!direct_only(options) && !scene.lights.empty());
+}
+
 bool needs_volume(const Scene& scene, const FrameOptions& options) {
-  if (options.gi != GiMode::volume || scene.triangle_count() == 0) return false;
-  const bool direct_only = options.light == LightPart::direct || options.volume.bounces == 0;
+  if (options.gi != GiMode::volume) return false;
   // The papers' volumes do not know which of their light is direct.
-  if (direct_only && !carries_sides(options.volume.scheme.scheme)) return false;
-  return direct_only ? has_emission(scene) : has_emission(scene) || !scene.lights.empty();
+  if (direct_only(options) && !carries_sides(options.volume.scheme.scheme)) return false;
+  return needs_carrier(scene, options);
+}
+
+void warn_of_missing_light(const Scene& scene, const FrameOptions& options, const BounceBudget& budget) {
+  if (!has_emission(scene)) return;
+  if (budget.emission_arrival == BounceBudget::Carrier::nobody) {
+    warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
+  } else if (budget.higher_bounces == BounceBudget::Carrier::nobody && !direct_only(options)) {
+    warn_once(scene.name + ": light of emissive surfaces is not reflected with --gi vpl and negative; take volume");
+  }
 }
 
 }  // namespace
@@ -42,23 +60,48 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
   if (needs_volume(scene, options_)) {
     volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
                                             : make_volume_on_cpu(scene, options_.volume, options_.size);
-  } else if (budget_.emission_arrival == BounceBudget::Carrier::nobody && has_emission(scene)) {
-    warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
   }
+  if (budget_.first_bounce == BounceBudget::Carrier::virtual_lights && needs_carrier(scene, options_)) {
+    virtual_lights_ = std::make_unique<VirtualLights>(scene, options_.virtual_lights);
+    virtual_light_gather_ = std::make_unique<VirtualLightGather>(options_.size, options_.gather);
+    if (options_.gi == GiMode::negative && !direct_only(options_)) make_negative_lights();
+  }
+  warn_of_missing_light(scene, options_, budget_);
 }
 
 Frame::~Frame() = default;
+
+void Frame::make_negative_lights() {
+  negative_lights_ = std::make_unique<NegativeLights>(options_.negative_lights);
+  if (options_.negative_lights.method == NegativeLightOptions::Method::sides)
+    voxels_ = make_frame_voxels(scene_, options_.volume, runs_on_gpu(options_.backend));
+}
 
 void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   shadow_maps_.run(buffers_, scene_, timer);
   gbuffer_.run(buffers_, camera, timer);
   if (volume_) volume_->run(buffers_, shadow_maps_, gbuffer_, camera, timer);
+  if (virtual_lights_) {
+    virtual_lights_->run(shadow_maps_, timer);
+    if (negative_lights_) {
+      if (voxels_) voxels_->run(buffers_, timer);
+      negative_lights_->run(gbuffer_, camera, *virtual_lights_, voxels_ ? &voxels_->voxels() : nullptr, timer);
+    }
+    const auto part = direct_only(options_) ? VirtualLightGather::Part::emitted : VirtualLightGather::Part::all;
+    virtual_light_gather_->run(gbuffer_, *virtual_lights_, negative_lights_.get(), part,
+                               glm::distance(scene_.bounds_min, scene_.bounds_max), timer);
+  }
   direct_.run(gbuffer_, shadow_maps_, timer);
+
   RadianceLayers layers;
   layers.direct = {&direct_.radiance(), &gbuffer_.emission()};
   if (volume_) {
     layers.direct.push_back(&volume_->direct());
     layers.indirect.push_back(&volume_->indirect());
+  }
+  if (virtual_lights_) {
+    layers.direct.push_back(&virtual_light_gather_->direct());
+    if (!direct_only(options_)) layers.indirect.push_back(&virtual_light_gather_->indirect());
   }
   compose_.run(gbuffer_, layers, options_.light, timer);
 }
@@ -70,10 +113,30 @@ FrameReport Frame::report() const {
   // Per pixel: depth, position, normals, albedo, emission and id of the G-buffer; direct; compose.
   r.memory_bytes = buffers_.bytes() + shadow_maps_.bytes() +
                    size_t(options_.size.x) * size_t(options_.size.y) * (4 + 16 + 8 + 8 + 16 + 4 + 16 + 16);
-  if (!volume_) return r;
-  r.volume = volume_->report();
-  r.memory_bytes += r.volume.memory_bytes;
+  if (volume_) {
+    r.volume = volume_->report();
+    r.memory_bytes += r.volume.memory_bytes;
+  }
+  if (virtual_lights_) {
+    r.virtual_lights = virtual_lights_->count();
+    r.coarse_share = virtual_light_gather_->coarse_share();
+    r.memory_bytes += virtual_lights_->bytes() + virtual_light_gather_->bytes();
+  }
+  if (negative_lights_) {
+    r.negative_lights = negative_lights_->count();
+    r.memory_bytes += negative_lights_->bytes() + (voxels_ ? voxels_->bytes() : 0);
+  }
   return r;
+}
+
+VirtualLightList Frame::virtual_lights() const {
+  VirtualLightList list;
+  if (virtual_lights_) list = virtual_lights_->download();
+  list.world_origin = scene_.world_origin;
+  if (!negative_lights_) return list;
+  for (const shared::NegativeLight& n : negative_lights_->download())
+    list.lights.push_back({n.position, n.area_m2, n.direction, VIRTUAL_LIGHT_NEGATIVE, n.flux, -1});
+  return list;
 }
 
 }  // namespace volgi::screen

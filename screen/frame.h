@@ -8,7 +8,11 @@
 #include "screen/compose.h"
 #include "screen/direct.h"
 #include "screen/frame_volume.h"
+#include "screen/frame_voxels.h"
+#include "screen/negative_lights.h"
 #include "screen/reflective_shadow_map.h"
+#include "screen/virtual_light_gather.h"
+#include "screen/virtual_lights.h"
 
 namespace volgi::screen {
 
@@ -25,12 +29,18 @@ struct FrameOptions {
   VolumeOptions volume;
   Backend backend = Backend::automatic;
   ReflectiveShadowMap::Resolution shadow_resolution;
+  VirtualLightOptions virtual_lights;
+  NegativeLightOptions negative_lights;
+  GatherOptions gather;
 };
 
 /// What a frame was made of, for --stats.
 struct FrameReport {
   VolumeReport volume;
-  size_t memory_bytes = 0;  // of GL objects, and of the volume wherever it lies
+  int virtual_lights = 0;
+  int negative_lights = 0;
+  float coarse_share = 0.0f;  // of the pixels whose light comes from coarse ones
+  size_t memory_bytes = 0;    // of GL objects, and of the volume wherever it lies
 };
 
 /// The frame: which passes run, and in which order. One scene, one picture size; render() as often as wanted.
@@ -48,8 +58,12 @@ class Frame {
   const gl::Texture& radiance() const;
   /// Waits for the GPU; after a frame, not in one.
   FrameReport report() const;
+  /// Virtual lights of the last frame, negative ones last; empty where there are none. Waits for the GPU.
+  VirtualLightList virtual_lights() const;
 
  private:
+  void make_negative_lights();
+
   const Scene& scene_;
   FrameOptions options_;
   BounceBudget budget_;
@@ -58,7 +72,12 @@ class Frame {
   GBuffer gbuffer_;
   Direct direct_;
   Compose compose_;
-  std::unique_ptr<FrameVolume> volume_;  // none when nobody asks for its light
+  // None when nobody asks for their light.
+  std::unique_ptr<FrameVolume> volume_;
+  std::unique_ptr<VirtualLights> virtual_lights_;
+  std::unique_ptr<FrameVoxels> voxels_;
+  std::unique_ptr<NegativeLights> negative_lights_;
+  std::unique_ptr<VirtualLightGather> virtual_light_gather_;
 };
 
 }  // namespace volgi::screen

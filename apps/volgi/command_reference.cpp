@@ -14,7 +14,9 @@
 #include "core/image.h"
 #include "core/log.h"
 #include "core/scene.h"
+#include "core/virtual_light_list.h"
 #include "reference/path_tracer.h"
+#include "reference/virtual_light_tracer.h"
 
 namespace volgi::app {
 namespace {
@@ -25,8 +27,39 @@ struct ReferenceOptions {
   PathTracerOptions tracer;
   std::optional<int> bounces;
   std::string light = "full", filter = "point";
+  std::optional<std::filesystem::path> virtual_lights;  // none: paths are traced
+  std::string visibility = "exact";
   bool quiet = false;
 };
+
+PathTracerOptions::Light asked_light(const std::string& light) {
+  if (light == "direct") return PathTracerOptions::Light::direct;
+  return light == "indirect" ? PathTracerOptions::Light::indirect : PathTracerOptions::Light::full;
+}
+
+ReferencePicture traced(const ReferenceOptions& options) {
+  PathTracerOptions tracer = options.tracer;
+  tracer.size = options.scene.size();
+  tracer.max_bounces = options.bounces;
+  tracer.light = asked_light(options.light);
+  if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
+  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  return path_trace(scene, options.scene.camera(scene), tracer);
+}
+
+ReferencePicture gathered(const ReferenceOptions& options) {
+  if (options.filter != "point")
+    throw Error(ExitCode::usage, "--filter box: --vpls gathers at pixel centres only, leave --filter out");
+  VirtualLightGatherOptions gather;
+  gather.size = options.scene.size();
+  gather.light = asked_light(options.light);
+  gather.seed = options.tracer.seed;
+  gather.threads = options.tracer.threads;
+  if (options.visibility == "none") gather.visibility = VirtualLightGatherOptions::Visibility::none;
+  const VirtualLightList list = read_virtual_lights(*options.virtual_lights);
+  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  return gather_virtual_lights(scene, options.scene.camera(scene), list, gather);
+}
 
 void render(const ReferenceOptions& options) {
   set_quiet(options.quiet);
@@ -34,22 +67,19 @@ void render(const ReferenceOptions& options) {
     throw Error(ExitCode::usage,
                 fmt::format("-o {}: a reference is an EXR file, name it *.exr", options.output.string()));
   check_writable(options.output);  // not after hours of rendering
-  PathTracerOptions tracer = options.tracer;
-  tracer.size = options.scene.size();
-  tracer.max_bounces = options.bounces;
-  if (options.light == "direct") tracer.light = PathTracerOptions::Light::direct;
-  if (options.light == "indirect") tracer.light = PathTracerOptions::Light::indirect;
-  if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
-  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
-  const Camera camera = options.scene.camera(scene);
-  write_exr(options.output, to_channels(path_trace(scene, camera, tracer)));
+  write_exr(options.output, to_channels(options.virtual_lights ? gathered(options) : traced(options)));
 }
 
 constexpr const char* kFooter =
     R"(Writes R,G,B [W m^-2 sr^-1]; direct; noise, direct_noise (half the difference of two independent halves of the
 samples, what `volgi compare` takes out); position [m], normal, albedo, id, depth [m]. With --light indirect the direct
 layer is called left_out.direct. The same bytes for any number of threads.
-Example: volgi reference data/reference/scenes/cornell.glb -o cornell.exr --size 192x192 --spp 1024)";
+--vpls gathers virtual lights of `volgi render --dump` instead of tracing paths, with the noise layers zero: reflected
+ones are the indirect light; emitted ones are the direct light of emissive surfaces, beside the exact punctual light;
+negative ones are left out, exact visibility is what they stand for. Cost: pixels x lights shadow rays, 100 million for
+320x320 and 1024 lights.
+Example: volgi reference data/reference/scenes/cornell.glb -o cornell.exr --size 192x192 --spp 1024
+         volgi reference cornell.glb -o same_lights.exr --size 192x192 --vpls dump/virtual_lights.json)";
 
 }  // namespace
 
@@ -58,12 +88,14 @@ void add_reference_command(CLI::App& app, int& exit_code) {
   CLI::App& command = *app.add_subcommand("reference", "Path-traced reference picture of a scene (Embree, CPU)");
   options->scene.add_to(command);
   command.add_option("-o,--output", options->output, "EXR file to write")->required();
-  command.add_option("--spp", options->tracer.samples_per_pixel, "samples per pixel, rounded up to an even number")
-      ->check(CLI::Range(1, 1 << 24))
-      ->capture_default_str();
-  command
-      .add_option("--bounces", options->bounces, "largest number of reflections, 0 is direct light only [unlimited]")
-      ->check(CLI::Range(0, std::numeric_limits<int>::max()));
+  CLI::Option* spp =
+      command.add_option("--spp", options->tracer.samples_per_pixel, "samples per pixel, rounded up to an even number")
+          ->check(CLI::Range(1, 1 << 24))
+          ->capture_default_str();
+  CLI::Option* bounces = command
+                             .add_option("--bounces", options->bounces,
+                                         "largest number of reflections, 0 is direct light only [unlimited]")
+                             ->check(CLI::Range(0, std::numeric_limits<int>::max()));
   command.add_option("--light", options->light, "light in R,G,B")
       ->check(CLI::IsMember({"full", "direct", "indirect"}))
       ->capture_default_str();
@@ -72,6 +104,18 @@ void add_reference_command(CLI::App& app, int& exit_code) {
       .add_option("--filter", options->filter,
                   "point: pixel centres, as a rasterizer samples; box: mean over the pixel")
       ->check(CLI::IsMember({"point", "box"}))
+      ->capture_default_str();
+  CLI::Option* vpls = command
+                          .add_option("--vpls", options->virtual_lights,
+                                      "gather these virtual lights (JSON of render --dump) instead of tracing paths")
+                          ->type_name("FILE")
+                          ->excludes(spp)
+                          ->excludes(bounces);
+  command
+      .add_option("--visibility", options->visibility,
+                  "of --vpls. exact: a shadow ray to every light; none: as if nothing stood in between")
+      ->check(CLI::IsMember({"exact", "none"}))
+      ->needs(vpls)
       ->capture_default_str();
   command.add_option("--threads", options->tracer.threads, "CPU threads, 0 for all; the picture does not depend on it")
       ->check(CLI::Range(0, 4096))

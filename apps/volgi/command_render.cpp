@@ -13,6 +13,7 @@
 #include "core/gl/context.h"
 #include "core/image.h"
 #include "core/log.h"
+#include "core/virtual_light_list.h"
 #include "screen/image_from_texture.h"
 
 namespace volgi::app {
@@ -24,6 +25,7 @@ struct RenderCommand {
   FrameCommandOptions frame;
   std::filesystem::path out = "out.png";
   std::filesystem::path stats;
+  std::filesystem::path dump;
   float exposure_ev = 0.0f;
   bool half = false;
   bool quiet = false;
@@ -41,6 +43,12 @@ void warn_of_bad_pixels(const Image& picture) {
       return;
     }
   }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(ExitCode::cannot_write, folder.string() + ": cannot make this folder: " + error.message());
 }
 
 void RenderCommand::write_picture(const Image& picture) const {
@@ -61,6 +69,11 @@ int RenderCommand::run() const {
   }
   check_writable(out);
   if (!stats.empty()) check_writable(stats);
+  const std::filesystem::path lights_file = dump / "virtual_lights.json";
+  if (!dump.empty()) {
+    make_folder(dump);
+    check_writable(lights_file);
+  }
   Scene loaded = load_scene(scene.scene_path, scene.time_s);
   Camera camera = scene.camera(loaded);
   gl::Context context(device);
@@ -89,10 +102,12 @@ int RenderCommand::run() const {
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},
+                           {"vpls", frame.vpls},
                            {"set", frame.parameters}};
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << numbers.dump(1) << '\n'; });
   }
+  if (!dump.empty()) write_virtual_lights(lights_file, picture.virtual_lights());
   if (!quiet) fmt::print("{}wrote {}\n", pass_table(numbers), out.string());
   return int(ExitCode::done);
 }
@@ -117,6 +132,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command->add_option("--device", options->device,
                       "number of the EGL device (the first hardware device, else software)");
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
+  command->add_option("--dump", options->dump,
+                      "folder for what the last frame was lit by: virtual_lights.json, for reference --vpls");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->footer(
       "Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512");

@@ -31,15 +31,42 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.volume.passes_a_run = int(v); }},
     {"conservative.coarse", "conservative: 1 carries the tail on a grid of half the edge (1)", 0, 1,
      [](Options& o, double v) { o.volume.scheme.coarse_start = v != 0.0; }},
+    {"vpl.flux", "vpl, negative: 1 samples by reflected flux, 0 by solid angle (0)", 0, 1,
+     [](Options& o, double v) {
+       using Sampling = screen::VirtualLightOptions::Sampling;
+       o.virtual_lights.sampling = v != 0.0 ? Sampling::flux : Sampling::halton;
+     }},
+    {"negative.count", "negative: number of negative lights (256)", 1, NEGATIVE_LIGHTS_MOST,
+     [](Options& o, double v) { o.negative_lights.count = int(v); }},
+    {"negative.method",
+     "negative: 0 places and shapes them as Cochran and Steele 2007 do, 1 by the flux that passes what the camera "
+     "sees, "
+     "2 by the flux that passes the volume's sides (2)",
+     0, 2, [](Options& o, double v) { o.negative_lights.method = screen::NegativeLightOptions::Method(int(v)); }},
+    {"gather.stride", "virtual lights: pixels between coarse ones, 1 gathers at every pixel (2)", 1, 16,
+     [](Options& o, double v) { o.gather.stride = int(v); }},
+    {"gather.discontinuity", "virtual lights: turn of normal or surface that a pixel is gathered again for [rad] (0.2)",
+     0, 10, [](Options& o, double v) { o.gather.threshold_rad = float(v); }},
+    {"gather.contrast", "virtual lights: the same for a part of the irradiance (0.25)", 0, 1,
+     [](Options& o, double v) { o.gather.contrast = float(v); }},
+    {"gather.distance", "virtual lights: the same for a part of the scene's diagonal (0.05)", 0, 1,
+     [](Options& o, double v) { o.gather.distance = float(v); }},
     {"gaitatzes.half_albedo", "gaitatzes2010: 1 takes 0.5 for every albedo after the first bounce (0)", 0, 1,
      [](Options& o, double v) { o.volume.scheme.constant_albedo = v != 0.0; }},
 };
+
+screen::GiMode gi_mode(const std::string& name) {
+  using screen::GiMode;
+  if (name == "none") return GiMode::none;
+  if (name == "vpl") return GiMode::vpl;
+  return name == "negative" ? GiMode::negative : GiMode::volume;
+}
 
 }  // namespace
 
 void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--gi", gi, "technique; lpv is volume --scheme lpv2009")
-      ->check(CLI::IsMember({"none", "lpv", "volume"}))
+      ->check(CLI::IsMember({"none", "lpv", "volume", "vpl", "negative"}))
       ->capture_default_str();
   command.add_option("--light", light, "light shown; direct: straight from any emitter, indirect: after a reflection")
       ->check(CLI::IsMember({"full", "direct", "indirect"}))
@@ -48,12 +75,17 @@ void FrameCommandOptions::add_to(CLI::App& command) {
       ->check(CLI::IsMember({"auto", "gpu", "cpu"}))
       ->capture_default_str();
   volume.add_to(command);
+  command.add_option("--vpls", vpls, "virtual point lights of all lights together, shared by flux")
+      ->check(CLI::Range(1, screen::VirtualLightOptions::kMost))
+      ->capture_default_str();
+  command.add_option("--vpls-per-light", vpls_per_light, "as many for each light instead (emitters count as one)")
+      ->check(CLI::Range(1, screen::VirtualLightOptions::kMost));
   command.add_option("--set", parameters, parameter_help(std::span<const Parameter<Options>>(kParameters)));
 }
 
 screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
   Options o;
-  o.gi = gi == "none" ? screen::GiMode::none : screen::GiMode::volume;
+  o.gi = gi_mode(gi);
   o.light = light == "full"     ? screen::LightPart::full
             : light == "direct" ? screen::LightPart::direct
                                 : screen::LightPart::indirect;
@@ -62,6 +94,8 @@ screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
               : backend == "cpu" ? screen::Backend::cpu
                                  : screen::Backend::automatic;
   o.volume = volume.volume_options();
+  o.virtual_lights.count = vpls;
+  o.virtual_lights.per_light = vpls_per_light;
   if (gi == "lpv") o.volume.scheme.scheme = Scheme::lpv2009;
   set_parameters(o, std::span<const Parameter<Options>>(kParameters), parameters);
   bounce_rules(o.volume, 0.5f);

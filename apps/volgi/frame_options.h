@@ -8,12 +8,15 @@
 
 namespace volgi::app {
 
-/// What `render` says about the technique: --gi, --light, --backend, --set and what VolumeCommandOptions takes.
+/// What `render` says about the technique: --gi, --light, --backend, --vpls, --vpls-per-light, --set
+/// and what VolumeCommandOptions takes.
 struct FrameCommandOptions {
   std::string gi = "volume";
   std::string light = "full";
   std::string backend = "auto";
   VolumeCommandOptions volume;
+  int vpls = 1024;
+  std::optional<int> vpls_per_light;
   std::vector<std::string> parameters;  // NAME=VALUE
 
   void add_to(CLI::App& command);

@@ -27,7 +27,9 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"orders", report.volume.bounces.orders},
       {"converged", report.volume.bounces.converged},
       {"sides", report.volume.sides},
-      {"vpls", 0},
+      {"vpls", report.virtual_lights},
+      {"negative_lights", report.negative_lights},
+      {"coarse_share", report.coarse_share},
       {"vals", 0},
       {"backend", report.volume.on_gpu ? "gpu" : "cpu"},
       {"memory_bytes", report.memory_bytes},
@@ -55,6 +57,12 @@ std::string pass_table(const nlohmann::json& stats) {
         stats["grid"][0].get<int>(), stats["grid"][1].get<int>(), stats["grid"][2].get<int>(),
         stats["sides"].get<unsigned>(), stats["orders"].get<int>(), stats["iterations"].get<int>(),
         stats["backend"] == "gpu" ? "GPU" : "CPU", stats["memory_bytes"].get<double>() / 1048576.0);
+  }
+  if (stats["vpls"] != 0) {
+    text += fmt::format("  {} virtual lights", stats["vpls"].get<int>());
+    if (stats["negative_lights"] != 0) text += fmt::format(", {} negative", stats["negative_lights"].get<int>());
+    text += fmt::format(", {:.1f} % of the pixels from coarse ones, {:.1f} MiB in all\n",
+                        100.0 * stats["coarse_share"].get<double>(), stats["memory_bytes"].get<double>() / 1048576.0);
   }
   return text;
 }

@@ -13,7 +13,9 @@ cp -r "$source/tests/package/consumer" "$work/consumer"
 }
 mv "$work/staged" "$work/prefix"  # a package that remembers where it was installed fails from here on
 
-if grep -rIlF -e "$source" -e "$binary" -e "$work/staged" "$work/prefix"; then
+# As whole paths: a tree at /volgi is not meant by .../include/volgi.
+paths=$(printf '%s\n' "$source" "$binary" "$work/staged" | sed 's/[][\.*^$+?(){}|]/\\&/g' | paste -sd'|')
+if grep -rIlE "(^|[^[:alnum:]_./}-])($paths)(/|[^[:alnum:]_.-]|$)" "$work/prefix"; then
   echo "the files above name the source tree, the build tree or the first prefix"
   exit 1
 fi

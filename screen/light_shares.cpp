@@ -1,0 +1,111 @@
+#include "screen/light_shares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+
+#include "core/light_layers.h"
+
+namespace volgi::screen {
+namespace {
+
+double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+
+/// 1 - cos without the cancellation.
+double one_minus_cos(double angle_rad) {
+  const double s = std::sin(0.5 * angle_rad);
+  return 2.0 * s * s;
+}
+
+/// Integral of glTF's spot falloff over the sphere [sr]: ((c - cos outer) s)² from the outer cone until it reaches 1 at
+/// the inner one, 1 from there to the axis. Its slope s is at most 1000, so that a narrow cone may end before.
+double spot_solid_angle(const Light& light) {
+  const double outer = one_minus_cos(double(light.outer_cone_rad));
+  const double ramp = std::max(0.001, outer - one_minus_cos(double(light.inner_cone_rad)));
+  const double reached = std::min(outer, ramp);
+  return 2.0 * glm::pi<double>() * (reached * reached * reached / (3.0 * ramp * ramp) + (outer - reached));
+}
+
+/// Power of all sources, emissive surfaces last.
+std::vector<double> power_of_sources(const Scene& scene, glm::dvec3 emitted_flux) {
+  std::vector<double> power;
+  for (const Light& light : scene.lights) power.push_back(power_luminance(light, scene.bounds_min, scene.bounds_max));
+  power.push_back(luminance(emitted_flux));
+  return power;
+}
+
+LightShares from_counts(std::vector<int> counts) {
+  const int of_emitters = counts.back();
+  counts.pop_back();
+  return {std::move(counts), of_emitters};
+}
+
+}  // namespace
+
+double rectangle_of_sun_m2(const shared::ReflectiveShadowLayer& layer, int resolution) {
+  const double inner = 1.0 - 2.0 * RSM_MARGIN_TEXELS / double(resolution);
+  return 4.0 * double(layer.extent_x) * double(layer.extent_y) * inner * inner;
+}
+
+double power_luminance(const Light& light, glm::vec3 bounds_min, glm::vec3 bounds_max) {
+  const double intensity = luminance(light.intensity);
+  switch (light.type) {
+    case Light::Type::spot:
+      return intensity * spot_solid_angle(light);
+    case Light::Type::directional: {
+      constexpr int any_resolution = 256;  // the margin that it makes is taken off again
+      const auto layers = reflective_shadow_layers(light, any_resolution, bounds_min, bounds_max);
+      return intensity * rectangle_of_sun_m2(layers.front(), any_resolution);
+    }
+    case Light::Type::point:
+      break;
+  }
+  return intensity * 4.0 * glm::pi<double>();
+}
+
+std::vector<int> share_out(const std::vector<double>& power, int count) {
+  std::vector<int> share(power.size(), 0);
+  std::vector<size_t> sources;  // that take part
+  for (size_t i = 0; i < power.size(); ++i) {
+    if (power[i] > 0.0) sources.push_back(i);
+  }
+  std::stable_sort(sources.begin(), sources.end(), [&](size_t a, size_t b) { return power[a] > power[b]; });
+  if (sources.empty()) return share;
+  if (size_t(count) <= sources.size()) {
+    for (size_t k = 0; k < size_t(count); ++k) share[sources[k]] = 1;
+    return share;
+  }
+  // Sources too weak for a whole one get one, the weakest first; the rest is for the others.
+  double total = 0.0;
+  for (const size_t i : sources) total += power[i];
+  while (sources.size() > 1 && power[sources.back()] * count < total) {
+    share[sources.back()] = 1;
+    total -= power[sources.back()];
+    sources.pop_back();
+    --count;
+  }
+  std::vector<double> remainder(power.size(), 0.0);
+  int left = count;
+  for (const size_t i : sources) {
+    const double quota = power[i] / total * count;
+    share[i] = std::max(1, int(quota));
+    remainder[i] = quota - share[i];
+    left -= share[i];
+  }
+  std::stable_sort(sources.begin(), sources.end(), [&](size_t a, size_t b) { return remainder[a] > remainder[b]; });
+  for (size_t k = 0; left > 0; ++k, --left) ++share[sources[k % sources.size()]];
+  return share;
+}
+
+LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count) {
+  return from_counts(share_out(power_of_sources(scene, emitted_flux), count));
+}
+
+LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each) {
+  std::vector<int> counts;
+  for (const double power : power_of_sources(scene, emitted_flux)) counts.push_back(power > 0.0 ? each : 0);
+  return from_counts(counts);
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,33 @@
+#pragma once
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "core/scene.h"
+#include "shaders/shared/reflective_shadow_map.shared.h"
+
+namespace volgi::screen {
+
+/// How many of the virtual lights each source gets.
+struct LightShares {
+  std::vector<int> of_light;  // as Scene::lights
+  int of_emitters = 0;        // all emissive surfaces together
+};
+
+/// Area [m^2] across a sun's direction that its layer covers, without the margin: the bounds' rectangle.
+double rectangle_of_sun_m2(const shared::ReflectiveShadowLayer& layer, int resolution);
+
+/// Luminance of the power [W] that a light sends: into its cone, without range, or across the scene's bounds.
+double power_luminance(const Light& light, glm::vec3 bounds_min, glm::vec3 bounds_max);
+
+/// `count` shared in proportion to `power`: by largest remainder, earlier ones first among equals, and at least one to
+/// everything with power > 0; where that is too many, one to each of the strongest.
+std::vector<int> share_out(const std::vector<double>& power, int count);
+
+/// Shares by the luminance of what sources send. That does not ask what light falls on, so shares stay while lights
+/// move; only a sun that turns sees another rectangle.
+/// @param emitted_flux  power of all emissive surfaces together [W].
+LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count);
+/// `each` for every source that sends anything.
+LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each);
+
+}  // namespace volgi::screen

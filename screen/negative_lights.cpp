@@ -1,0 +1,75 @@
+#include "screen/negative_lights.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace volgi::screen {
+
+namespace {
+
+using Method = NegativeLightOptions::Method;
+constexpr size_t kPixelCandidates = 64 * 64;  // CANDIDATES_X, _Y of shaders/screen/negative_candidates.glsl
+
+/// What shaders/screen/passed_light.glsl needs.
+void set_view(const gl::Program& program, const Camera& camera, glm::ivec2 size) {
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  const float half_height = perspective ? std::tan(0.5f * camera.yfov_rad) : camera.ymag;
+  const float pixel = 2.0f * half_height / float(size.y);
+  program.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
+  program.set("view_axis", glm::normalize(glm::vec3(camera.world_from_camera[2])));
+  program.set("pixel_m2", pixel * pixel);
+}
+
+}  // namespace
+
+NegativeLights::NegativeLights(const NegativeLightOptions& options)
+    : options_(options), lights_(NEGATIVE_LIGHTS_MOST * sizeof(shared::NegativeLight)) {
+  assert(options.count >= 1 && options.count <= NEGATIVE_LIGHTS_MOST);
+  std::vector<std::string> defines;
+  if (options_.method != Method::cochran2007) defines.emplace_back("PASSED_FLUX");
+  if (options_.method == Method::sides) defines.emplace_back("SIDES");
+  place_ = gl::Program::compute("screen/negative_lights.comp.glsl", defines);
+  if (options_.method == Method::cochran2007) return;
+  weigh_ = gl::Program::compute("screen/negative_weights.comp.glsl", defines);
+  sum_ = gl::Program::compute("screen/negative_sum.comp.glsl", defines);
+}
+
+void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLights& lights,
+                         const VoxelGridGl* voxels, gl::PassTimer& timer) {
+  assert((options_.method == Method::sides) == (voxels != nullptr));
+  const auto scope = timer.scope(name);
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  lights.buffer().bind_storage(0);
+  lights_.bind_storage(1);
+  if (voxels != nullptr) voxels->bind();
+  for (const gl::Program* program : {&weigh_, &place_}) {
+    if (program->id() == 0) continue;
+    program->set("light_count", lights.reflected());
+    set_view(*program, camera, gbuffer.size());
+  }
+  if (options_.method != Method::cochran2007) choose(voxels);
+  place_.use();
+  place_.set("negative_count", options_.count);
+  gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void NegativeLights::choose(const VoxelGridGl* voxels) {
+  const size_t candidates = voxels != nullptr ? voxels->side_capacity : kPixelCandidates;
+  if (weights_.id() == 0 || weights_.bytes() < candidates * sizeof(float))
+    weights_ = gl::Buffer(std::max(candidates, size_t(1)) * sizeof(float));
+  weights_.bind_storage(2);
+  weigh_.use();
+  gl::dispatch({int(candidates), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_.use();
+  gl::dispatch({1, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+std::vector<shared::NegativeLight> NegativeLights::download() const {
+  return lights_.download<shared::NegativeLight>(size_t(options_.count));
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,199 @@
+#include "screen/virtual_lights.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <string>
+
+#include "core/error.h"
+#include "core/halton.h"
+
+namespace volgi::screen {
+namespace {
+
+using Sampling = VirtualLightOptions::Sampling;
+
+constexpr GLuint kLightsBinding = 0, kSamplesBinding = 3, kPyramidBinding = 4;
+
+const VirtualLightOptions& checked(const VirtualLightOptions& options) {
+  const int asked = options.per_light.value_or(options.count);
+  if (asked < 1 || asked > VirtualLightOptions::kMost) {
+    throw Error(ExitCode::usage, std::to_string(asked) + " virtual lights: the number must lie between 1 and " +
+                                     std::to_string(VirtualLightOptions::kMost));
+  }
+  return options;
+}
+
+/// 1 - cos of half the cone that a light fills.
+double cone_height(const Light& light) {
+  if (light.type == Light::Type::point) return 2.0;
+  const double s = std::sin(0.5 * double(light.outer_cone_rad));
+  return 2.0 * s * s;
+}
+
+/// The shortest turn that takes -Y to `direction` (unit): (0, -1, 0) x direction = (-z, 0, x) is its axis. Straight up
+/// all turns are as short; half a turn about X is taken.
+glm::mat3 world_from_axis(glm::dvec3 d) {
+  const double across = d.x * d.x + d.z * d.z;
+  if (d.y > 0.0 && across < 1e-30) return glm::mat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
+  const double k = d.y > 0.0 ? (1.0 + d.y) / across : 1.0 / (1.0 - d.y);  // 1 / (1 - y), without cancellation
+  return glm::mat3(glm::dmat3(1.0 - k * d.x * d.x, d.x, -k * d.x * d.z,   // columns
+                              -d.x, -d.y, -d.z,                           //
+                              -k * d.x * d.z, d.z, 1.0 - k * d.z * d.z));
+}
+
+std::vector<glm::vec4> samples_of(const Light& light, Sampling sampling, int count) {
+  std::vector<glm::vec4> samples;
+  samples.reserve(size_t(count));
+  if (sampling == Sampling::flux || light.type == Light::Type::directional) {
+    for (int i = 1; i <= count; ++i) samples.emplace_back(glm::vec2(halton(std::uint64_t(i))), 0.0f, 0.0f);
+    return samples;
+  }
+  for (const glm::vec3 d : halton_directions_in_cone(cone_height(light), count)) samples.emplace_back(d, 0.0f);
+  return samples;
+}
+
+shared::VirtualLight to_virtual_light(const EmitterPoint& point) {
+  return {point.position, point.area_m2, point.normal, VIRTUAL_LIGHT_EMITTED, point.flux, -1};
+}
+
+/// Sizes of the levels of flux_importance.glsl, from level 1.
+std::vector<int> pyramid_sizes(int resolution) {
+  std::vector<int> sizes;
+  while (resolution > 1) sizes.push_back(resolution = (resolution + 3) / 4);
+  return sizes;
+}
+
+}  // namespace
+
+VirtualLights::VirtualLights(const Scene& scene, const VirtualLightOptions& options)
+    : scene_(scene), options_(checked(options)), emitters_(scene) {
+  const bool by_flux = options_.sampling == Sampling::flux;
+  lights_program_ = gl::Program::compute(by_flux ? "screen/flux_importance_lights.comp.glsl"  //
+                                                 : "screen/virtual_lights.comp.glsl");
+  if (by_flux) {
+    texels_program_ = gl::Program::compute("screen/flux_importance_texels.comp.glsl");
+    reduce_program_ = gl::Program::compute("screen/flux_importance_reduce.comp.glsl");
+  }
+}
+
+LightShares VirtualLights::shares() const {
+  const LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
+                                                : share_by_power(scene_, emitters_.flux(), options_.count);
+  // At most kMost each, so that the sum cannot overflow for any number of lights that fits in memory.
+  const auto all = std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_emitters));
+  if (all > VirtualLightOptions::kMost) {
+    throw Error(ExitCode::over_limit, std::to_string(*options_.per_light) + " virtual lights for each source make " +
+                                          std::to_string(all) + ", more than " +
+                                          std::to_string(VirtualLightOptions::kMost) + "; ask for fewer");
+  }
+  return shares;
+}
+
+/// Makes room, and places what does not depend on the maps: points on emissive surfaces, zeros behind the last.
+void VirtualLights::lay_out(const LightShares& shares) {
+  const int reflected = std::accumulate(shares.of_light.begin(), shares.of_light.end(), 0);
+  if (lights_.id() != 0 && reflected == reflected_ && shares.of_emitters == emitted_) return;
+  reflected_ = reflected;
+  emitted_ = shares.of_emitters;
+  const size_t blocks = size_t(std::max(count() - 1, 0)) / VIRTUAL_LIGHTS_A_BLOCK + 1;
+  std::vector<shared::VirtualLight> lights(blocks * VIRTUAL_LIGHTS_A_BLOCK);
+  const std::vector<EmitterPoint> points = emitters_.points(emitted_);
+  std::transform(points.begin(), points.end(), lights.begin() + reflected_, to_virtual_light);
+  const size_t bytes = lights.size() * sizeof(shared::VirtualLight);
+  if (lights_.bytes() == bytes) {
+    lights_.upload(lights.data(), bytes);
+  } else {
+    lights_ = gl::Buffer(lights);
+  }
+}
+
+/// Uploads the samples of all lights, unless they are what they were.
+void VirtualLights::make_samples(const LightShares& shares) {
+  std::vector<SampleKey> keys;
+  for (size_t i = 0; i < scene_.lights.size(); ++i) {
+    const Light& light = scene_.lights[i];
+    keys.push_back({light.type, light.type == Light::Type::spot ? light.outer_cone_rad : 0.0f, shares.of_light[i]});
+  }
+  if (samples_.id() != 0 && keys == keys_) return;
+  std::vector<glm::vec4> samples;
+  for (size_t i = 0; i < scene_.lights.size(); ++i) {
+    const auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i]);
+    samples.insert(samples.end(), of_light.begin(), of_light.end());
+  }
+  samples_ = gl::Buffer(samples);
+  keys_ = std::move(keys);
+}
+
+void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
+  assert(maps.light_count() == int(scene_.lights.size()));
+  const auto scope = timer.scope(name);
+  const LightShares of = shares();
+  lay_out(of);
+  make_samples(of);
+  int first = 0;
+  for (int light = 0; light < maps.light_count(); ++light) {
+    const int count = of.of_light[size_t(light)];
+    if (count == 0) continue;
+    maps.bind(light);
+    samples_.bind_storage(kSamplesBinding);
+    lights_program_.set("light", light);
+    lights_program_.set("count", count);
+    lights_program_.set("first", first);
+    lights_program_.set("first_sample", first);
+    if (options_.sampling == Sampling::flux) {
+      sample_by_flux(maps, light);
+    } else {
+      sample_evenly(maps, light);
+    }
+    lights_.bind_storage(kLightsBinding);
+    lights_program_.use();
+    gl::dispatch({count, 1, 1}, {64, 1, 1});
+    first += count;
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+void VirtualLights::sample_evenly(const ReflectiveShadowMap& maps, int light) const {
+  const Light& l = scene_.lights[size_t(light)];
+  const int count = keys_[size_t(light)].count;
+  double measure = 2.0 * glm::pi<double>() * cone_height(l);
+  if (l.type == Light::Type::directional) {
+    const size_t layer = size_t(maps.lights()[size_t(light)].first_layer);
+    measure = rectangle_of_sun_m2(maps.layers()[layer], maps.resolution(light));
+  }
+  lights_program_.set("measure", float(measure / count));
+  lights_program_.set("world_from_axis",
+                      l.type == Light::Type::spot ? world_from_axis(glm::dvec3(l.direction)) : glm::mat3(1.0f));
+}
+
+void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {
+  const int layers = maps.layer_count(light);
+  const std::vector<int> sizes = pyramid_sizes(maps.resolution(light));
+  size_t values = 0;
+  for (const int size : sizes) values += size_t(layers) * size_t(size) * size_t(size);
+  if (pyramid_.bytes() < values * sizeof(float)) pyramid_ = gl::Buffer(values * sizeof(float));
+  pyramid_.bind_storage(kPyramidBinding);
+  texels_program_.set("light", light);
+  texels_program_.use();
+  gl::dispatch({sizes[0], sizes[0], layers}, {8, 8, 1});
+  reduce_program_.set("resolution", maps.resolution(light));
+  reduce_program_.set("layer_count", layers);
+  reduce_program_.use();
+  for (size_t level = 2; level <= sizes.size(); ++level) {
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    reduce_program_.set("level", int(level));
+    gl::dispatch({sizes[level - 1], sizes[level - 1], layers}, {8, 8, 1});
+  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+VirtualLightList VirtualLights::download() const {
+  return {scene_.world_origin, lights_.download<shared::VirtualLight>(size_t(count()))};
+}
+
+size_t VirtualLights::bytes() const { return lights_.bytes() + samples_.bytes() + pyramid_.bytes(); }
+
+}  // namespace volgi::screen

@@ -1,0 +1,71 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "core/emitter_points.h"
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "core/scene.h"
+#include "core/virtual_light_list.h"
+#include "screen/light_shares.h"
+#include "screen/reflective_shadow_map.h"
+
+namespace volgi::screen {
+
+struct VirtualLightOptions {
+  int count = 1024;              // of all lights together, shared among them by flux; at least one each
+  std::optional<int> per_light;  // this many for every light instead (emissive surfaces together are one)
+  /// halton: equal solid angles of a spot or point light, equal areas across a sun (Cochran and Steele 2007, §3.1).
+  /// flux: in proportion to what texels of the reflective shadow map reflect.
+  enum class Sampling { halton, flux } sampling = Sampling::halton;
+  static constexpr int kMost = 65536;
+};
+
+/// Pass "screen/virtual_lights": the list of virtual point lights, made on the GPU from the reflective shadow maps of
+/// all lights and from points on emissive surfaces. Reflected lights come first, in the order of the scene's lights.
+class VirtualLights {
+ public:
+  static constexpr const char* name = "screen/virtual_lights";
+  /// @param scene  must outlive this. Only its lights may change.
+  /// @throws Error(usage) when the options ask for less than one light, or more than kMost.
+  VirtualLights(const Scene& scene, const VirtualLightOptions& options);
+
+  /// @param maps  of the lights of `scene` as they are now.
+  /// @throws Error(over_limit) when per_light times the number of sources exceeds kMost.
+  void run(const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+
+  const gl::Buffer& buffer() const { return lights_; }  // shared::VirtualLight, a multiple of VIRTUAL_LIGHTS_A_BLOCK
+  int reflected() const { return reflected_; }          // lights [0, reflected)
+  int emitted() const { return emitted_; }              // lights [reflected, reflected + emitted)
+  int count() const { return reflected_ + emitted_; }
+  /// Waits for the GPU; after a frame, not in one.
+  VirtualLightList download() const;
+  size_t bytes() const;
+
+ private:
+  /// What the samples of one light depend on.
+  struct SampleKey {
+    Light::Type type;
+    float outer_cone_rad;  // 0 unless a spot's
+    int count;
+    bool operator==(const SampleKey&) const = default;
+  };
+  LightShares shares() const;
+  void lay_out(const LightShares& shares);
+  void make_samples(const LightShares& shares);
+  void sample_evenly(const ReflectiveShadowMap& maps, int light) const;
+  void sample_by_flux(const ReflectiveShadowMap& maps, int light);
+
+  const Scene& scene_;
+  VirtualLightOptions options_;
+  EmitterPoints emitters_;
+  gl::Buffer lights_;
+  gl::Buffer samples_;  // vec4 each: of all lights, in their order
+  gl::Buffer pyramid_;  // of one light at a time: flux_importance.glsl
+  std::vector<SampleKey> keys_;
+  gl::Program lights_program_, texels_program_, reduce_program_;
+  int reflected_ = 0, emitted_ = 0;
+};
+
+}  // namespace volgi::screen
