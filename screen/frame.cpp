@@ -32,6 +32,12 @@ bool needs_volume(const Scene& scene, const FrameOptions& options) {
   return needs_carrier(scene, options);
 }
 
+VirtualLightOptions candidate_options(const FrameOptions& options) {
+  VirtualLightOptions o = options.virtual_lights;
+  o.candidates = options.choose_one_of;
+  return o;
+}
+
 void warn_of_missing_light(const Scene& scene, const FrameOptions& options, const BounceBudget& budget) {
   if (!has_emission(scene)) return;
   if (budget.emission_arrival == BounceBudget::Carrier::nobody) {
@@ -62,7 +68,9 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
                                             : make_volume_on_cpu(scene, options_.volume, options_.size);
   }
   if (budget_.first_bounce == BounceBudget::Carrier::virtual_lights && needs_carrier(scene, options_)) {
-    virtual_lights_ = std::make_unique<VirtualLights>(scene, options_.virtual_lights);
+    virtual_lights_ = std::make_unique<VirtualLights>(scene, candidate_options(options_));
+    if (options_.choose_one_of > 1)
+      choose_virtual_lights_ = std::make_unique<ChooseVirtualLights>(options_.choose_one_of);
     virtual_light_gather_ = std::make_unique<VirtualLightGather>(options_.size, options_.gather);
     if (options_.gi == GiMode::negative && !direct_only(options_)) make_negative_lights();
   }
@@ -83,12 +91,14 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   if (volume_) volume_->run(buffers_, shadow_maps_, gbuffer_, camera, timer);
   if (virtual_lights_) {
     virtual_lights_->run(shadow_maps_, timer);
+    if (choose_virtual_lights_) choose_virtual_lights_->run(virtual_lights_->list(), gbuffer_, timer);
+    const VirtualLightListGl& lights = light_list();
     if (negative_lights_) {
       if (voxels_) voxels_->run(buffers_, timer);
-      negative_lights_->run(gbuffer_, camera, *virtual_lights_, voxels_ ? &voxels_->voxels() : nullptr, timer);
+      negative_lights_->run(gbuffer_, camera, lights, voxels_ ? &voxels_->voxels() : nullptr, timer);
     }
     const auto part = direct_only(options_) ? VirtualLightGather::Part::emitted : VirtualLightGather::Part::all;
-    virtual_light_gather_->run(gbuffer_, *virtual_lights_, negative_lights_.get(), part,
+    virtual_light_gather_->run(gbuffer_, lights, negative_lights_.get(), part,
                                glm::distance(scene_.bounds_min, scene_.bounds_max), timer);
   }
   direct_.run(gbuffer_, shadow_maps_, timer);
@@ -108,6 +118,10 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
 
 const gl::Texture& Frame::radiance() const { return compose_.radiance(); }
 
+const VirtualLightListGl& Frame::light_list() const {
+  return choose_virtual_lights_ ? choose_virtual_lights_->lights() : virtual_lights_->list();
+}
+
 FrameReport Frame::report() const {
   FrameReport r;
   // Per pixel: depth, position, normals, albedo, emission and id of the G-buffer; direct; compose.
@@ -118,9 +132,10 @@ FrameReport Frame::report() const {
     r.memory_bytes += r.volume.memory_bytes;
   }
   if (virtual_lights_) {
-    r.virtual_lights = virtual_lights_->count();
+    r.virtual_lights = light_list().count();
     r.coarse_share = virtual_light_gather_->coarse_share();
-    r.memory_bytes += virtual_lights_->bytes() + virtual_light_gather_->bytes();
+    r.memory_bytes += virtual_lights_->bytes() + virtual_light_gather_->bytes() +
+                      (choose_virtual_lights_ ? choose_virtual_lights_->bytes() : 0);
   }
   if (negative_lights_) {
     r.negative_lights = negative_lights_->count();
@@ -131,7 +146,7 @@ FrameReport Frame::report() const {
 
 VirtualLightList Frame::virtual_lights() const {
   VirtualLightList list;
-  if (virtual_lights_) list = virtual_lights_->download();
+  if (virtual_lights_) list.lights = download(light_list());
   list.world_origin = scene_.world_origin;
   if (!negative_lights_) return list;
   for (const shared::NegativeLight& n : negative_lights_->download())

@@ -5,6 +5,7 @@
 #include "core/gl/pass_timer.h"
 #include "propagation/volume_options.h"
 #include "screen/bounce_budget.h"
+#include "screen/choose_virtual_lights.h"
 #include "screen/compose.h"
 #include "screen/direct.h"
 #include "screen/frame_volume.h"
@@ -30,6 +31,8 @@ struct FrameOptions {
   Backend backend = Backend::automatic;
   ReflectiveShadowMap::Resolution shadow_resolution;
   VirtualLightOptions virtual_lights;
+  int choose_one_of =
+      8;  // of so many candidates the virtual light that matters to the picture; 1: take them as they come
   NegativeLightOptions negative_lights;
   GatherOptions gather;
 };
@@ -63,6 +66,7 @@ class Frame {
 
  private:
   void make_negative_lights();
+  const VirtualLightListGl& light_list() const;
 
   const Scene& scene_;
   FrameOptions options_;
@@ -75,6 +79,7 @@ class Frame {
   // None when nobody asks for their light.
   std::unique_ptr<FrameVolume> volume_;
   std::unique_ptr<VirtualLights> virtual_lights_;
+  std::unique_ptr<ChooseVirtualLights> choose_virtual_lights_;
   std::unique_ptr<FrameVoxels> voxels_;
   std::unique_ptr<NegativeLights> negative_lights_;
   std::unique_ptr<VirtualLightGather> virtual_light_gather_;

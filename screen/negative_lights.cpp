@@ -10,6 +10,10 @@ namespace {
 using Method = NegativeLightOptions::Method;
 constexpr size_t kPixelCandidates = 64 * 64;  // CANDIDATES_X, _Y of shaders/screen/negative_candidates.glsl
 
+/// Turns that light may have to take on its way into the last corner: three axes a round. What it does not find counts
+/// as closed, and loses negative lights there.
+constexpr int kSpreadRounds = 6;
+
 /// What shaders/screen/passed_light.glsl needs.
 void set_view(const gl::Program& program, const Camera& camera, glm::ivec2 size) {
   const bool perspective = camera.kind == Camera::Kind::perspective;
@@ -32,20 +36,23 @@ NegativeLights::NegativeLights(const NegativeLightOptions& options)
   if (options_.method == Method::cochran2007) return;
   weigh_ = gl::Program::compute("screen/negative_weights.comp.glsl", defines);
   sum_ = gl::Program::compute("screen/negative_sum.comp.glsl", defines);
+  if (options_.method != Method::sides) return;
+  seed_ = gl::Program::compute("screen/open_cells_seed.comp.glsl");
+  spread_ = gl::Program::compute("screen/open_cells_spread.comp.glsl");
 }
 
-void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLights& lights,
+void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights,
                          const VoxelGridGl* voxels, gl::PassTimer& timer) {
   assert((options_.method == Method::sides) == (voxels != nullptr));
   const auto scope = timer.scope(name);
   gbuffer.position().bind(0);
   gbuffer.normals().bind(1);
-  lights.buffer().bind_storage(0);
+  lights.buffer.bind_storage(0);
   lights_.bind_storage(1);
-  if (voxels != nullptr) voxels->bind();
+  if (voxels != nullptr) find_open_cells(*voxels, lights.reflected);
   for (const gl::Program* program : {&weigh_, &place_}) {
     if (program->id() == 0) continue;
-    program->set("light_count", lights.reflected());
+    program->set("light_count", lights.reflected);
     set_view(*program, camera, gbuffer.size());
   }
   if (options_.method != Method::cochran2007) choose(voxels);
@@ -53,6 +60,27 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
   place_.set("negative_count", options_.count);
   gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
   glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count) {
+  voxels.bind();
+  const size_t bytes = cell_count(voxels.grid) * sizeof(GLuint);
+  if (open_cells_.bytes() != bytes) open_cells_ = gl::Buffer(bytes);
+  open_cells_.clear();
+  open_cells_.bind_storage(6);
+  seed_.use();
+  seed_.set("light_count", light_count);
+  gl::dispatch({light_count, 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  spread_.use();
+  for (int round = 0; round < kSpreadRounds; ++round) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const glm::ivec3 cells = voxels.grid.cells;
+      spread_.set("axis", axis);
+      gl::dispatch({cells.x * cells.y * cells.z / cells[axis], 1, 1}, {64, 1, 1});
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+  }
 }
 
 void NegativeLights::choose(const VoxelGridGl* voxels) {

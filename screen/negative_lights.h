@@ -6,7 +6,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/gbuffer.h"
-#include "screen/virtual_lights.h"
+#include "screen/virtual_light_list_gl.h"
 #include "shaders/shared/negative_light.shared.h"
 #include "voxel/voxel_grid_gl.h"
 
@@ -31,22 +31,24 @@ class NegativeLights {
   explicit NegativeLights(const NegativeLightOptions& options);
 
   /// @param voxels  for Method::sides, else null.
-  void run(const GBuffer& gbuffer, const Camera& camera, const VirtualLights& lights, const VoxelGridGl* voxels,
+  void run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights, const VoxelGridGl* voxels,
            gl::PassTimer& timer);
 
   const gl::Buffer& buffer() const { return lights_; }  // shared::NegativeLight x NEGATIVE_LIGHTS_MOST
   int count() const { return options_.count; }
   /// Waits for the GPU; after a frame, not in one.
   std::vector<shared::NegativeLight> download() const;
-  size_t bytes() const { return lights_.bytes() + weights_.bytes(); }
+  size_t bytes() const { return lights_.bytes() + weights_.bytes() + open_cells_.bytes(); }
 
  private:
+  void find_open_cells(const VoxelGridGl& voxels, int light_count);
   void choose(const VoxelGridGl* voxels);
 
   NegativeLightOptions options_;
   gl::Buffer lights_;
-  gl::Buffer weights_;  // of candidates (shaders/screen/negative_candidates.glsl)
-  gl::Program place_, weigh_, sum_;
+  gl::Buffer weights_;     // of candidates (shaders/screen/negative_candidates.glsl)
+  gl::Buffer open_cells_;  // of Method::sides
+  gl::Program place_, weigh_, sum_, seed_, spread_;
 };
 
 }  // namespace volgi::screen

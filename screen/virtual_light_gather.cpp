@@ -44,15 +44,15 @@ VirtualLightGather::VirtualLightGather(glm::ivec2 size, const GatherOptions& opt
   discontinuity_ = gl::Program::compute("screen/discontinuity.comp.glsl");
 }
 
-void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLights& lights, const NegativeLights* negative,
+void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative,
                              Part part, float scene_diagonal_m, gl::PassTimer& timer) {
-  const int reflected = part == Part::all ? lights.reflected() : 0;
-  const bool with_direct = lights.emitted() > 0;
+  const int reflected = part == Part::all ? lights.reflected : 0;
+  const bool with_direct = lights.emitted > 0;
   const auto gather_all = [&](Points points, const gl::Texture& indirect, const gl::Texture& direct) {
     const auto scope = timer.scope(name);
     bind_pixels(gbuffer);
     gather(points, lights, 0, reflected, negative, indirect);
-    if (with_direct) gather(points, lights, lights.reflected(), lights.count(), nullptr, direct);
+    if (with_direct) gather(points, lights, lights.reflected, lights.count(), nullptr, direct);
   };
   if (options_.stride == 1) {
     gather_all(Points::grid, indirect_, direct_);
@@ -67,7 +67,7 @@ void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLights& lights
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-void VirtualLightGather::gather(Points points, const VirtualLights& lights, int first, int end,
+void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights, int first, int end,
                                 const NegativeLights* negative, const gl::Texture& target) {
   const bool listed = points == Points::list;
   const gl::Program& program = listed ? gather_list_ : gather_grid_;
@@ -81,7 +81,7 @@ void VirtualLightGather::gather(Points points, const VirtualLights& lights, int 
   const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_A_BLOCK, first_block);
   for (int block = first_block; block <= last_block; ++block) {
     const int start = block * VIRTUAL_LIGHTS_A_BLOCK;
-    glBindBufferRange(GL_UNIFORM_BUFFER, 0, lights.buffer().id(), block * kBlockBytes, kBlockBytes);
+    glBindBufferRange(GL_UNIFORM_BUFFER, 0, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
     program.set("first_light", std::max(first - start, 0));
     program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_A_BLOCK));
     program.set("begins", block == first_block ? 1 : 0);

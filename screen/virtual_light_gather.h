@@ -4,7 +4,7 @@
 #include "core/gl/program.h"
 #include "screen/gbuffer.h"
 #include "screen/negative_lights.h"
-#include "screen/virtual_lights.h"
+#include "screen/virtual_light_list_gl.h"
 
 namespace volgi::screen {
 
@@ -30,7 +30,7 @@ class VirtualLightGather {
   /// @param negative  taken from the reflected lights' irradiance; may be null.
   /// @param part  emitted: direct() only.
   /// @param scene_diagonal_m  what options.distance is part of.
-  void run(const GBuffer& gbuffer, const VirtualLights& lights, const NegativeLights* negative, Part part,
+  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative, Part part,
            float scene_diagonal_m, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
@@ -41,7 +41,7 @@ class VirtualLightGather {
 
  private:
   enum class Points { grid, list };
-  void gather(Points points, const VirtualLights& lights, int first, int end, const NegativeLights* negative,
+  void gather(Points points, const VirtualLightListGl& lights, int first, int end, const NegativeLights* negative,
               const gl::Texture& target);
   void find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m);
 

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/halton.h"
+#include "core/hilbert.h"
 
 namespace volgi::screen {
 namespace {
@@ -55,6 +56,20 @@ std::vector<glm::vec4> samples_of(const Light& light, Sampling sampling, int cou
   return samples;
 }
 
+/// Along a curve on which neighbours are near, so that equal steps through weights of theirs are an even choice.
+void order_along_curve(std::vector<glm::vec4>& samples, bool directions) {
+  float widest = 1e-10f;  // of directions, as height above the cone's axis -Y
+  if (directions) {
+    for (const glm::vec4& s : samples) widest = std::max(widest, s.y + 1.0f);
+  }
+  const auto place = [&](const glm::vec4& s) {
+    if (!directions) return hilbert_index(glm::vec2(s));
+    return hilbert_index({std::atan2(s.z, s.x) / glm::two_pi<float>() + 0.5f, (s.y + 1.0f) / widest});
+  };
+  std::stable_sort(samples.begin(), samples.end(),
+                   [&](const glm::vec4& a, const glm::vec4& b) { return place(a) < place(b); });
+}
+
 shared::VirtualLight to_virtual_light(const EmitterPoint& point) {
   return {point.position, point.area_m2, point.normal, VIRTUAL_LIGHT_EMITTED, point.flux, -1};
 }
@@ -80,8 +95,8 @@ VirtualLights::VirtualLights(const Scene& scene, const VirtualLightOptions& opti
 }
 
 LightShares VirtualLights::shares() const {
-  const LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
-                                                : share_by_power(scene_, emitters_.flux(), options_.count);
+  LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
+                                          : share_by_power(scene_, emitters_.flux(), options_.count);
   // At most kMost each, so that the sum cannot overflow for any number of lights that fits in memory.
   const auto all = std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_emitters));
   if (all > VirtualLightOptions::kMost) {
@@ -89,24 +104,25 @@ LightShares VirtualLights::shares() const {
                                           std::to_string(all) + ", more than " +
                                           std::to_string(VirtualLightOptions::kMost) + "; ask for fewer");
   }
+  for (int& of_light : shares.of_light) of_light *= options_.candidates;
+  shares.of_emitters *= options_.candidates;
   return shares;
 }
 
 /// Makes room, and places what does not depend on the maps: points on emissive surfaces, zeros behind the last.
 void VirtualLights::lay_out(const LightShares& shares) {
-  const int reflected = std::accumulate(shares.of_light.begin(), shares.of_light.end(), 0);
-  if (lights_.id() != 0 && reflected == reflected_ && shares.of_emitters == emitted_) return;
-  reflected_ = reflected;
-  emitted_ = shares.of_emitters;
-  const size_t blocks = size_t(std::max(count() - 1, 0)) / VIRTUAL_LIGHTS_A_BLOCK + 1;
-  std::vector<shared::VirtualLight> lights(blocks * VIRTUAL_LIGHTS_A_BLOCK);
-  const std::vector<EmitterPoint> points = emitters_.points(emitted_);
-  std::transform(points.begin(), points.end(), lights.begin() + reflected_, to_virtual_light);
+  if (list_.buffer.id() != 0 && shares.of_light == list_.of_light && shares.of_emitters == list_.emitted) return;
+  list_.of_light = shares.of_light;
+  list_.reflected = std::accumulate(shares.of_light.begin(), shares.of_light.end(), 0);
+  list_.emitted = shares.of_emitters;
+  std::vector<shared::VirtualLight> lights(padded_count(list_));
+  const std::vector<EmitterPoint> points = emitters_.points(list_.emitted);
+  std::transform(points.begin(), points.end(), lights.begin() + list_.reflected, to_virtual_light);
   const size_t bytes = lights.size() * sizeof(shared::VirtualLight);
-  if (lights_.bytes() == bytes) {
-    lights_.upload(lights.data(), bytes);
+  if (list_.buffer.bytes() == bytes) {
+    list_.buffer.upload(lights.data(), bytes);
   } else {
-    lights_ = gl::Buffer(lights);
+    list_.buffer = gl::Buffer(lights);
   }
 }
 
@@ -120,7 +136,11 @@ void VirtualLights::make_samples(const LightShares& shares) {
   if (samples_.id() != 0 && keys == keys_) return;
   std::vector<glm::vec4> samples;
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
-    const auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i]);
+    auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i]);
+    if (options_.candidates > 1) {
+      const bool by_area = options_.sampling == Sampling::flux || scene_.lights[i].type == Light::Type::directional;
+      order_along_curve(of_light, !by_area);
+    }
     samples.insert(samples.end(), of_light.begin(), of_light.end());
   }
   samples_ = gl::Buffer(samples);
@@ -148,7 +168,7 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
     } else {
       sample_evenly(maps, light);
     }
-    lights_.bind_storage(kLightsBinding);
+    list_.buffer.bind_storage(kLightsBinding);
     lights_program_.use();
     gl::dispatch({count, 1, 1}, {64, 1, 1});
     first += count;
@@ -190,10 +210,6 @@ void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-VirtualLightList VirtualLights::download() const {
-  return {scene_.world_origin, lights_.download<shared::VirtualLight>(size_t(count()))};
-}
-
-size_t VirtualLights::bytes() const { return lights_.bytes() + samples_.bytes() + pyramid_.bytes(); }
+size_t VirtualLights::bytes() const { return list_.buffer.bytes() + samples_.bytes() + pyramid_.bytes(); }
 
 }  // namespace volgi::screen

@@ -10,6 +10,7 @@
 #include "core/virtual_light_list.h"
 #include "screen/light_shares.h"
 #include "screen/reflective_shadow_map.h"
+#include "screen/virtual_light_list_gl.h"
 
 namespace volgi::screen {
 
@@ -19,6 +20,7 @@ struct VirtualLightOptions {
   /// halton: equal solid angles of a spot or point light, equal areas across a sun (Cochran and Steele 2007, §3.1).
   /// flux: in proportion to what texels of the reflective shadow map reflect.
   enum class Sampling { halton, flux } sampling = Sampling::halton;
+  int candidates = 1;  // so many times the lights of each source, for ChooseVirtualLights
   static constexpr int kMost = 65536;
 };
 
@@ -35,12 +37,13 @@ class VirtualLights {
   /// @throws Error(over_limit) when per_light times the number of sources exceeds kMost.
   void run(const ReflectiveShadowMap& maps, gl::PassTimer& timer);
 
-  const gl::Buffer& buffer() const { return lights_; }  // shared::VirtualLight, a multiple of VIRTUAL_LIGHTS_A_BLOCK
-  int reflected() const { return reflected_; }          // lights [0, reflected)
-  int emitted() const { return emitted_; }              // lights [reflected, reflected + emitted)
-  int count() const { return reflected_ + emitted_; }
+  const VirtualLightListGl& list() const { return list_; }
+  const gl::Buffer& buffer() const { return list_.buffer; }
+  int reflected() const { return list_.reflected; }
+  int emitted() const { return list_.emitted; }
+  int count() const { return list_.count(); }
   /// Waits for the GPU; after a frame, not in one.
-  VirtualLightList download() const;
+  VirtualLightList download() const { return {scene_.world_origin, volgi::screen::download(list_)}; }
   size_t bytes() const;
 
  private:
@@ -60,12 +63,11 @@ class VirtualLights {
   const Scene& scene_;
   VirtualLightOptions options_;
   EmitterPoints emitters_;
-  gl::Buffer lights_;
+  VirtualLightListGl list_;
   gl::Buffer samples_;  // vec4 each: of all lights, in their order
   gl::Buffer pyramid_;  // of one light at a time: flux_importance.glsl
   std::vector<SampleKey> keys_;
   gl::Program lights_program_, texels_program_, reduce_program_;
-  int reflected_ = 0, emitted_ = 0;
 };
 
 }  // namespace volgi::screen

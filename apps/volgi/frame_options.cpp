@@ -36,6 +36,11 @@ constexpr Parameter<Options> kParameters[] = {
        using Sampling = screen::VirtualLightOptions::Sampling;
        o.virtual_lights.sampling = v != 0.0 ? Sampling::flux : Sampling::halton;
      }},
+    {"vpl.one_of",
+     "vpl, negative: one virtual light of so many candidates, by what they send to the picture; 1 takes the paper's "
+     "own "
+     "samples (16)",
+     1, 64, [](Options& o, double v) { o.choose_one_of = int(v); }},
     {"negative.count", "negative: number of negative lights (256)", 1, NEGATIVE_LIGHTS_MOST,
      [](Options& o, double v) { o.negative_lights.count = int(v); }},
     {"negative.method",

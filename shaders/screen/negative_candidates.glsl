@@ -6,9 +6,7 @@
 layout(std430, binding = 2) buffer Weights { float weights[]; };  // flux [W]; then summed from the first on
 
 #ifdef SIDES
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+#include "screen/open_cells.glsl"
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 
@@ -20,6 +18,8 @@ int candidate_count() { return CANDIDATES_X * CANDIDATES_Y; }
 #endif
 
 float total_weight() { return candidate_count() > 0 ? weights[candidate_count() - 1] : 0.0; }
+
+float weight_of(int candidate) { return weights[candidate] - (candidate > 0 ? weights[candidate - 1] : 0.0); }
 
 // First candidate whose sum exceeds `sum`.
 int candidate_at(float sum) {

@@ -2,6 +2,9 @@
 // Places negative lights, one to a work group. Cochran and Steele 2007, section 3.3.
 // PASSED_FLUX: on candidates, chosen by the flux that passes through them; else on pixels of a Halton sequence.
 #include "screen/negative_surface.glsl"
+#ifdef SIDES
+#include "screen/first_passage.glsl"
+#endif
 #include "shared/negative_light.shared.h"
 
 layout(local_size_x = 64) in;
@@ -18,8 +21,12 @@ float radical_inverse_3(uint i) {
 }
 
 #ifdef PASSED_FLUX
+// A candidate chosen with probability p stands for 1 / (count p) of itself.
 ExitSurface chosen_surface(int k) {
-  return exit_surface(candidate_at(total_weight() * (float(k) + 0.5) / float(negative_count)));
+  int candidate = candidate_at(total_weight() * (float(k) + 0.5) / float(negative_count));
+  ExitSurface surface = exit_surface(candidate);
+  surface.area_m2 *= total_weight() / (float(negative_count) * weight_of(candidate));
+  return surface;
 }
 #else
 ExitSurface chosen_surface(int k) {
@@ -27,6 +34,14 @@ ExitSurface chosen_surface(int k) {
   ivec2 size = textureSize(position_map, 0);
   ivec2 pixel = min(ivec2(halton * vec2(size)), size - 1);
   return exit_surface_of_pixel(pixel, float(size.x) * float(size.y) / float(negative_count));
+}
+#endif
+
+#ifdef SIDES
+bool enters_first(ExitSurface surface, int light) {
+  if (dot(surface.position - lights[light].position, surface.normal) <= 0.0) return false;
+  vec3 source = cell_from_world(grid, lights[light].position) + lights[light].normal;
+  return is_first_passage(cell_from_world(grid, surface.position), surface.cell, source);
 }
 #endif
 
@@ -42,7 +57,12 @@ void main() {
   ExitSurface surface = chosen_surface(k);
   PassedLight sum = PassedLight(vec3(0.0), vec3(0.0));
   if (surface.area_m2 > 0.0) {
-    for (int i = int(thread); i < light_count; i += 64) add_passed_light(i, surface.position, surface.normal, sum);
+    for (int i = int(thread); i < light_count; i += 64) {
+#ifdef SIDES
+      if (!enters_first(surface, i)) continue;
+#endif
+      add_passed_light(i, surface.position, surface.normal, sum);
+    }
   }
   irradiance_part[thread] = sum.irradiance;
   direction_part[thread] = sum.direction;
@@ -59,7 +79,7 @@ void main() {
     return;
   }
 #ifdef PASSED_FLUX
-  float area = total_weight() / float(negative_count) / weight;
+  float area = surface.area_m2;
   float exponent = lobe_exponent(length(sum.direction) / weight);
 #else
   float area = surface.area_m2;

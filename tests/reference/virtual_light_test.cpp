@@ -152,6 +152,7 @@ TEST(VirtualLights, BothNormalsCount) {
   };
   for (const glm::vec3& p : pixels({5, -1, 0}, {-1, 0, 0})) EXPECT_EQ(p, glm::vec3(0));  // under the triangles
   for (const glm::vec3& p : pixels({-5, 1, 0}, {1, 0, 0})) EXPECT_EQ(p, glm::vec3(0));   // behind the shading normal
+  for (const glm::vec3& p : pixels({-5, 1, 0}, {-1, 0, 0})) EXPECT_EQ(p, glm::vec3(0));  // and facing away
   for (const glm::vec3& p : pixels({5, 1, 0}, {-1, 0, 0})) EXPECT_GT(p.x, 0.0f);
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "core/gl/objects.h"
+#include "shaders/shared/virtual_light.shared.h"
+
+namespace volgi::screen {
+
+/// Virtual lights on the GPU, as passes take them. Some may have no flux: those stand for samples that met nothing.
+struct VirtualLightListGl {
+  gl::Buffer buffer;          // shared::VirtualLight, padded_count() of them; zeros behind the last
+  std::vector<int> of_light;  // reflected ones, of each punctual light in its order
+  int reflected = 0;          // lights [0, reflected): the sum of of_light
+  int emitted = 0;            // lights [reflected, reflected + emitted)
+  int count() const { return reflected + emitted; }
+};
+
+/// A multiple of VIRTUAL_LIGHTS_A_BLOCK, at least one, so that uniform blocks can be bound whole.
+size_t padded_count(const VirtualLightListGl& list);
+/// Waits for the GPU; after a frame, not in one.
+std::vector<shared::VirtualLight> download(const VirtualLightListGl& list);
+
+}  // namespace volgi::screen

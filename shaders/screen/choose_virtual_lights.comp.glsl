@@ -1,0 +1,31 @@
+#version 450 core
+// Systematic resampling: the candidates that equal steps through the summed weights meet.
+#include "screen/light_candidates.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) writeonly buffer Lights { VirtualLight chosen_lights[]; };
+uniform int first;
+uniform int count;
+
+int candidate_at(float sum) {
+  int low = 0, high = candidate_count - 1;
+  while (low < high) {
+    int middle = (low + high) / 2;
+    if (summed_probability(middle) > sum) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+}
+
+void main() {
+  int k = int(gl_GlobalInvocationID.x);
+  if (k >= count) return;
+  int candidate = candidate_at((float(k) + 0.5) / float(count));
+  float probability = summed_probability(candidate) - summed_probability(candidate - 1);
+  VirtualLight l = candidate_lights[first_candidate + candidate];
+  // Candidates stand for one part in candidate_count each, the chosen ones for one in count.
+  float share = probability > 0.0 ? 1.0 / (float(count) * probability) : 0.0;
+  l.flux *= share;
+  l.area_m2 *= share;
+  chosen_lights[first + k] = l;
+}
