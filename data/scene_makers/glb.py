@@ -108,9 +108,9 @@ class Scene:
     def add(self, name, parts, **placement):
         self.node(name, self.mesh(name, parts), **placement)
 
-    def camera(self, eye, target, yfov_deg, zfar=50.0):
+    def camera(self, eye, target, yfov_deg, zfar=50.0, aspect=1.0):
         self.cameras.append({'name': 'camera', 'type': 'perspective', 'perspective': {
-            'aspectRatio': 1.0, 'yfov': round(math.radians(yfov_deg), 9), 'znear': 0.05, 'zfar': zfar}})
+            'aspectRatio': round(aspect, 9), 'yfov': round(math.radians(yfov_deg), 9), 'znear': 0.05, 'zfar': zfar}})
         self.nodes.append({'name': 'camera', 'camera': 0, 'translation': _rounded(eye),
                            'rotation': _rounded(vec.looking_along(vec.sub(target, eye)))})
 

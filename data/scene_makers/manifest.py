@@ -81,6 +81,12 @@ def describe(name, entry, loaded):
         'reference': reference,
         'command': 'volgi reference %s/%s.glb -o %s --size 192x192 --spp %d' % (folder, name, reference, entry.spp),
     }
+    if entry.one_bounce_spp:
+        path = 'data/references/one_bounce/%s.exr' % name
+        described['one_bounce'] = {
+            'reference': path,
+            'command': 'volgi reference %s -o %s --size 192x192 --spp %d --bounces 1' % (
+                described['file'], path, entry.one_bounce_spp)}
     if entry.cycles:
         described['cycles'] = entry.cycles
     return described

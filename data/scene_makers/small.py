@@ -13,16 +13,16 @@ def reference_copy(name):
     return lambda: (REFERENCE / (name + '.glb')).read_bytes()
 
 
-def _wall_of(names):
+def wall_of(names):
     """Names an inward box's faces by (axis, sign of the normal that looks into the room)."""
     return lambda centre, axis, sign, tag: names[axis, sign]
 
 
-def _cornell_shell(scene, left=('red', (0.63, 0.065, 0.05)), right=('green', (0.14, 0.45, 0.091))):
+def cornell_shell(scene, left=('red', (0.63, 0.065, 0.05)), right=('green', (0.14, 0.45, 0.091))):
     """2 m box, open towards +Z."""
     scene.material('white', (0.75, 0.75, 0.75))
     walls = shapes.Blocks(inward=True, open_planes=[(2, 1.0)]).fill((-1.0, 0.0, -1.0), (1.0, 2.0, 1.0))
-    parts = walls.parts(_wall_of({(0, 1): 'left', (0, -1): 'right', (1, 1): 'white', (1, -1): 'white',
+    parts = walls.parts(wall_of({(0, 1): 'left', (0, -1): 'right', (1, 1): 'white', (1, -1): 'white',
                                   (2, 1): 'white'}))
     scene.add('white_walls', {'white': parts['white']})
     for side, (name, albedo) in (('left', left), ('right', right)):
@@ -33,7 +33,7 @@ def _cornell_shell(scene, left=('red', (0.63, 0.065, 0.05)), right=('green', (0.
 def convex_box():
     scene = Scene('convex_box', "The Cornell box's shell and light without its boxes: every point of a wall sees every "
                   'other wall, so that any shadow in the indirect light is an error.')
-    _cornell_shell(scene)
+    cornell_shell(scene)
     scene.camera(CORNELL_EYE, CORNELL_TARGET, 40.0)
     scene.light('spot', 8.0, (0.0, 1.96875, 0.0), (0.0, -1.0, 0.0), (49.5, 50.0))
     return scene
@@ -68,7 +68,7 @@ def furnace(albedo=0.5):
 def occluder():
     scene = Scene('occluder', 'A spot lights nothing but the left wall; a plate floats over the floor, whose shadow '
                   'exists only in the indirect light.', [(('plate',), False)])
-    _cornell_shell(scene, left=('ochre', (0.8, 0.6, 0.3)), right=('blue', (0.25, 0.35, 0.65)))
+    cornell_shell(scene, left=('ochre', (0.8, 0.6, 0.3)), right=('blue', (0.25, 0.35, 0.65)))
     scene.add('plate', {'white': shapes.box((-0.375, 0.328125, -0.375), (0.375, 0.359375, 0.375))})
     scene.camera(CORNELL_EYE, CORNELL_TARGET, 40.0)
     scene.light('spot', 12.0, (0.25, 1.25, 0.0), (-1.0, -0.125, 0.0), (24.0, 25.0))
@@ -117,7 +117,7 @@ def emissive():
     scene.material('blue', (0.5, 0.5, 0.5), radiance=(2.0, 5.0, 12.0))
 
     room = shapes.Blocks(inward=True).fill((-2.0, 0.0, -2.0), (2.0, 2.6, 2.0))
-    scene.add('room', room.parts(_wall_of({(0, 1): 'rose', (0, -1): 'plaster', (1, 1): 'floor', (1, -1): 'plaster',
+    scene.add('room', room.parts(wall_of({(0, 1): 'rose', (0, -1): 'plaster', (1, 1): 'floor', (1, -1): 'plaster',
                                            (2, 1): 'plaster', (2, -1): 'plaster'})))
     frame = shapes.box((-1.3, 1.1, -2.0), (0.1, 1.8, -1.92), [(2, -2.0), (2, -1.92)])
     front = shapes.Mesh()
