@@ -62,6 +62,7 @@ CoarseLink::CoarseLink(const VoxelGrid& fine, const VoxelGrid& coarse, int coeff
       exceptions_(size_t(coarse_numbers_.count())) {
   sort_cells(coarse);
   share_sides(fine, coarse);
+  find_beside(fine);
 }
 
 CoarseLink::Exceptions& CoarseLink::exceptions(int leaf) {
@@ -123,6 +124,40 @@ void CoarseLink::share_sides(const VoxelGrid& fine, const VoxelGrid& coarse) {
   for (std::uint32_t j = 0; j < all.size(); ++j) {
     if (all[j] <= 0.0) alone_.push_back(j);
   }
+}
+
+/// The sides on the same face of the cells beside, but for where something stands between.
+void CoarseLink::find_beside(const VoxelGrid& fine) {
+  beside_.assign(fine.side_count(), glm::ivec4(-1));
+  shown_m2_.resize(fine.side_count());
+  tbb::parallel_for(size_t(0), beside_.size(), [&](size_t i) {
+    const Side& side = fine.sides()[i];
+    shown_m2_[i] = side.face_m2;
+    const glm::ivec3 cell = shared::cell_coord(fine.grid(), side.cell);
+    for (int k = 0; k < 4; ++k) {
+      const int way = 2 * (((side.face >> 1) + 1 + (k >> 1)) % 3) + (k & 1);
+      const glm::ivec3 next = cell + shared::face_step(way);
+      if (!shared::cell_inside(fine.grid(), next) || shared::has_side(fine.cell_sides(cell), way)) continue;
+      const glm::uvec2 there = fine.cell_sides(next);
+      if (shared::has_side(there, side.face) && !shared::has_side(there, way ^ 1))
+        beside_[i][k] = int(shared::side_index(there, side.face));
+    }
+  });
+}
+
+/// Of steps two sides wide, the means 1/4, 1/2, 1/4 make what is linear between their middles. An exchange, so that
+/// power is kept.
+void CoarseLink::even_out(int along, std::span<const glm::vec4> from, std::span<glm::vec4> to) const {
+  tbb::parallel_for(size_t(0), beside_.size(), [&](size_t i) {
+    to[i] = from[i];
+    if (shown_m2_[i] <= 0.0f) return;
+    for (int k = 2 * along; k < 2 * along + 2; ++k) {
+      const int b = beside_[i][k];
+      if (b < 0 || shown_m2_[size_t(b)] <= 0.0f) continue;
+      const float exchanged_m2 = 0.25f * std::min(shown_m2_[i], shown_m2_[size_t(b)]);
+      to[i] += exchanged_m2 * (from[size_t(b)] / shown_m2_[size_t(b)] - from[i] / shown_m2_[i]);
+    }
+  });
 }
 
 std::vector<int> CoarseLink::reached(const LobeVolume& fine) const {
@@ -188,21 +223,26 @@ void CoarseLink::add_moved(const LobeVolume& fine, const LobeKernels& kernels, c
 }
 
 glm::dvec3 CoarseLink::spread(std::span<const glm::vec4> coarse_received, std::span<glm::vec4> received) const {
+  std::vector<glm::vec4> stepped(shares_.size()), even(shares_.size());
   tbb::parallel_for(size_t(0), shares_.size(), [&](size_t i) {
     const Share& s = shares_[i];
     glm::vec3 power(0.0f);
     for (int k = 0; k < 3; ++k) {
       if (s.shares[k] > 0.0f) power += s.shares[k] * glm::vec3(coarse_received[size_t(s.sides[k])]);
     }
-    received[i] += glm::vec4(power, 0.0f);
+    stepped[i] = glm::vec4(power, 0.0f);
   });
+  even_out(0, stepped, even);
+  even_out(1, even, stepped);
+  tbb::parallel_for(size_t(0), shares_.size(), [&](size_t i) { received[i] += stepped[i]; });
   glm::dvec3 lost(0.0);
   for (const std::uint32_t j : alone_) lost += glm::dvec3(coarse_received[j]);
   return lost;
 }
 
 size_t CoarseLink::bytes() const {
-  size_t sum = shares_.size() * sizeof(Share) + alone_.size() * sizeof(alone_[0]);
+  size_t sum =
+      shares_.size() * (sizeof(Share) + sizeof(beside_[0]) + sizeof(shown_m2_[0])) + alone_.size() * sizeof(alone_[0]);
   for (const auto& e : exceptions_) sum += e ? e->moved_out.size() + e->moved_in.size() * sizeof(Moved) : 0;
   return sum;
 }

@@ -22,7 +22,8 @@ class CoarseLink {
   /// belongs to the coarse cell behind that surface, so that no wall leaks.
   void gather(const LobeVolume& fine, const LobeKernels& kernels, int coarse_leaf, float* out) const;
   /// Adds to each fine side its share, by what it shows to the grid, of what the coarse sides that stand for its centre
-  /// have received. @return what coarse sides without fine ones have received [W].
+  /// have received, evened out linearly between coarse sides. @return what coarse sides without fine ones have received
+  /// [W].
   glm::dvec3 spread(std::span<const glm::vec4> coarse_received, std::span<glm::vec4> received) const;
   size_t bytes() const;
 
@@ -42,6 +43,8 @@ class CoarseLink {
 
   void sort_cells(const VoxelGrid& coarse);
   void share_sides(const VoxelGrid& fine, const VoxelGrid& coarse);
+  void find_beside(const VoxelGrid& fine);
+  void even_out(int along, std::span<const glm::vec4> from, std::span<glm::vec4> to) const;
   Exceptions& exceptions(int leaf);
   void add_children(const float* lobes, glm::ivec3 octant, const Exceptions* exceptions, float* out) const;
   void add_moved(const LobeVolume& fine, const LobeKernels& kernels, const Moved& moved, float* out) const;
@@ -50,6 +53,8 @@ class CoarseLink {
   LeafNumbers fine_numbers_, coarse_numbers_;
   std::vector<std::unique_ptr<Exceptions>> exceptions_;  // by coarse leaf
   std::vector<Share> shares_;                            // by fine side
+  std::vector<glm::ivec4> beside_;                       // fine sides: below and above along either axis of the face
+  std::vector<float> shown_m2_;                          // by fine side
   std::vector<std::uint32_t> alone_;                     // coarse sides without fine ones
 };
 

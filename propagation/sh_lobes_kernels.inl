@@ -43,19 +43,20 @@ VOLGI_INLINE void store_leaf(float* p, Row r) {
 VOLGI_INLINE Row select(Mask m, Row a) { return m ? a : Row{}; }
 VOLGI_INLINE float select(bool m, float a) { return m ? a : 0.0f; }
 
-/// Lobes of order 1: cut at the face's pyramid.
+/// Where the power through a face is zero, that is not a matter of rounding (FLUX_LEAST).
+template <class T>
+VOLGI_INLINE auto passes(T power, const T* l) {
+  return power > FLUX_LEAST * l[0];
+}
+
+/// Lobes of order 1: the flux of radiance through the face, projected on four coefficients.
 struct Order1 {
   static constexpr int kCoefficients = 4;
   static constexpr int component(int axis) { return axis == 0 ? 3 : axis; }
 
   template <int kAxis, int kSign, class T>
   static VOLGI_INLINE T power(const T* l) {
-    return PYRAMID_CONSTANT * l[0] + (kSign * PYRAMID_AXIS) * l[component(kAxis)];
-  }
-
-  template <class T>
-  static VOLGI_INLINE auto passes(T power, const T*) {
-    return power > 0.0f;
+    return FLUX_00 * l[0] + (kSign * FLUX_01) * l[component(kAxis)];
   }
 
   /// Adds the parts of two lobes that travel up (from below) and down (from above) the axis.
@@ -63,16 +64,15 @@ struct Order1 {
   static VOLGI_INLINE void add_both(const T* below, M open_below, const T* above, M open_above, T* out) {
     constexpr int a = component(kAxis), b = component((kAxis + 1) % 3), c = component((kAxis + 2) % 3);
     const T up = power<kAxis, 1>(below), down = power<kAxis, -1>(above);
-    const M lit_up = open_below & passes(up, below), lit_down = open_above & passes(down, above);
-    out[0] += select(lit_up, up) + select(lit_down, down);
-    out[a] += select(lit_up, PYRAMID_AXIS * below[0] + PYRAMID_AXIS_AXIS * below[a]) +
-              select(lit_down, PYRAMID_AXIS_AXIS * above[a] - PYRAMID_AXIS * above[0]);
-    out[b] += PYRAMID_TRANSVERSE * (select(lit_up, below[b]) + select(lit_down, above[b]));
-    out[c] += PYRAMID_TRANSVERSE * (select(lit_up, below[c]) + select(lit_down, above[c]));
+    const M u = open_below & passes(up, below), d = open_above & passes(down, above);
+    out[0] += select(u, up) + select(d, down);
+    out[a] += select(u, FLUX_10 * below[0] + FLUX_11 * below[a]) + select(d, FLUX_11 * above[a] - FLUX_10 * above[0]);
+    out[b] += FLUX_ACROSS_11 * (select(u, below[b]) + select(d, above[b]));
+    out[c] += FLUX_ACROSS_11 * (select(u, below[c]) + select(d, above[c]));
   }
 };
 
-/// Lobes of order 2: the flux of radiance through the face, projected on nine coefficients.
+/// Lobes of order 2: the same on nine.
 struct Order2 {
   static constexpr int kCoefficients = 9;
   static constexpr int component(int axis) { return axis == 0 ? 3 : axis; }
@@ -102,12 +102,6 @@ struct Order2 {
   template <int kAxis, int kSign, class T>
   static VOLGI_INLINE T power(const T* l) {
     return FLUX_00 * l[0] + (kSign * FLUX_01) * l[component(kAxis)] + FLUX_02 * about<kAxis>(l);
-  }
-
-  /// The back of what one side sends is zero: not a matter of rounding (FLUX_LEAST).
-  template <class T>
-  static VOLGI_INLINE auto passes(T power, const T* l) {
-    return power > FLUX_LEAST * l[0];
   }
 
   /// Even and odd moments about the axis come out of the sums and differences of what travels up and down.
@@ -148,7 +142,7 @@ struct Order2 {
 template <class Order, int kAxis, int kSign, class T>
 VOLGI_INLINE T passed(const T* l) {
   const T power = Order::template power<kAxis, kSign>(l);
-  return select(Order::passes(power, l), power);
+  return select(passes(power, l), power);
 }
 
 template <class Order, class T>

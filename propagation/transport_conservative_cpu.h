@@ -14,11 +14,11 @@ namespace volgi {
 /// `conservative` on the CPU: power that sides send goes through the grid as lobes of spherical harmonics, one cell a
 /// pass, as a pulse (docs/theory.md#conservative). Twin of ConservativeTransportGl.
 ///
-/// Order 1: a lobe leaves through a face by its integral over the face's 90-degree pyramid. Order 2: by the flux of the
-/// radiance that it stands for. Either way clamped at zero and rescaled so that the six sum to the lobe's power: in
-/// void power is kept to rounding, nothing is negative, isotropic light is a fixed point. Not linear. Cost: leaves of
-/// 8^3 cells that light has not reached cost nothing; a lit leaf is read and written once a pass. Memory: 48 bytes a
-/// lit cell and state (108 for order 2), two states. Light under 1e-38 W counts as none.
+/// A lobe leaves through a face by the flux there of the radiance that it stands for, clamped at zero and rescaled so
+/// that the six sum to the lobe's power: in void power is kept to rounding, nothing is negative, isotropic light is a
+/// fixed point. Not linear. Cost: leaves of 8^3 cells that light has not reached cost nothing; a lit leaf is read and
+/// written once a pass. Memory: 48 bytes a lit cell and state (108 for order 2), two states. Light under 1e-38 W counts
+/// as none.
 class ConservativeTransport : public Transport {
  public:
   /// @param order    1 (4 coefficients) or 2 (9).

@@ -12,14 +12,13 @@ namespace volgi {
 /// `conservative`: power that sides send goes through the grid as lobes of spherical harmonics, one cell a pass, as a
 /// pulse: sent once, hits added up until the power in flight is small enough.
 ///
-/// Order 1: a cell's lobe leaves through a face by its integral over the face's exact 90-degree pyramid, clamped at
-/// zero and rescaled so that the six sum to its power; what is handed on is the projection of the lobe cut at that
-/// pyramid. Order 2: by the exact flux of the radiance that the lobe stands for. In void the power is kept to rounding;
-/// no face passes and no side receives negative power; isotropic light is a fixed point (docs/theory.md#conservative).
-/// Not linear: clamp and rescale. Cost of a pass: 21 texel reads and 3 writes of 16 bytes a cell (49 and 7 for order
-/// 2). Memory: 96 bytes a cell (224). The host looks at the power in flight one batch of passes late, so the GPU never
-/// runs dry; the number of passes does not depend on timing. Source: Gaitatzes 2010 section 4.2; Kaplanyan 2009. We
-/// depart: pyramids for cones, power kept, sides.
+/// A cell's lobe leaves through a face by the exact flux there of the radiance that it stands for, clamped at zero and
+/// rescaled so that the six sum to its power; what is handed on is that flux projected. In void the power is kept to
+/// rounding; no face passes and no side receives negative power; isotropic light is a fixed point
+/// (docs/theory.md#conservative). Not linear: clamp and rescale. Cost of a pass: 21 texel reads and 3 writes of 16
+/// bytes a cell (49 and 7 for order 2). Memory: 96 bytes a cell (224). The host looks at the power in flight one batch
+/// of passes late, so the GPU never runs dry; the number of passes does not depend on timing. Source: Gaitatzes 2010
+/// section 4.2; Kaplanyan 2009. We depart: fluxes through faces for cones, power kept, sides.
 class ConservativeTransportGl : public TransportGl, public ResumableGl {
  public:
   /// @param sh_order  1 or 2.

@@ -39,6 +39,26 @@ VoxelGrid closed_box(int cells) {
   return VoxelGrid(grid, std::move(sides));
 }
 
+/// Shares of all leaves, rows of 8 cells and cells that hold light: what no sparse code of that grain can do without.
+glm::dvec3 lit_shares(const ConservativeTransport& transport) {
+  size_t rows = 0, cells = 0;
+  for (const int number : transport.lobes().leaves()) {
+    const float* leaf = transport.lobes().leaf(number);
+    for (int row = 0; row < kLobeRows; ++row) {
+      const size_t before = cells;
+      for (int i = 8 * row; i < 8 * row + 8; ++i) {
+        const bool lit =
+            leaf[lobe_block(0, 0) + i] > 0.0f || leaf[lobe_block(0, 1) + i] > 0.0f || leaf[lobe_block(0, 2) + i] > 0.0f;
+        cells += lit ? 1 : 0;
+      }
+      rows += cells > before ? 1 : 0;
+    }
+  }
+  const auto all = double(transport.numbers().count());
+  return {double(transport.lobes().leaves().size()) / all, double(rows) / (all * kLobeRows),
+          double(cells) / (all * kLobeLeafCells)};
+}
+
 }  // namespace
 
 nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
@@ -87,11 +107,19 @@ nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> 
   };
   const double dense = run(true);
   const double sparse = run(false);
+  const size_t lit_leaves = transport.lobes().leaves().size();
+  glm::dvec3 shares(0.0);
+  transport.begin(sent);
+  for (int pass = 0; pass < iterations; ++pass) {
+    transport.pass(received, true);
+    shares += lit_shares(transport) / double(iterations);
+  }
   return {{"sparse_ms", sparse},
           {"dense_ms", dense},
+          {"lit_shares", {{"leaves", shares[0]}, {"rows", shares[1]}, {"cells", shares[2]}}},
           {"speedup", dense / sparse},
           {"leaves", transport.numbers().count()},
-          {"lit_leaves", transport.lobes().leaves().size()},
+          {"lit_leaves", lit_leaves},
           {"iterations", iterations}};
 }
 

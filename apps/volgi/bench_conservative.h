@@ -13,7 +13,8 @@ nlohmann::json bench_conservative(int cells, int iterations, int repeats);
 
 /// Sparse leaves against all leaves in every pass, over a pulse's first passes.
 /// @param sent  power per side [W].
-/// @return sparse_ms, dense_ms (per pass), speedup, leaves, lit_leaves (after the last pass), iterations.
+/// @return sparse_ms, dense_ms (per pass), speedup, leaves, lit_leaves (after the last pass), iterations, lit_shares
+/// (leaves, rows, cells: of all, mean over what passes left; one over them is the most that sparse storage can gain).
 nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations);
 
 }  // namespace volgi::app

@@ -19,17 +19,11 @@ void add(ivec3 c, int coefficient, float red, float green, float blue) {
   imageStore(radiance_sh, texel, imageLoad(radiance_sh, texel) + vec4(more, 0.0));
 }
 
-#if ORDER == 1
-float passed(Lobe lobe, int face) { return max(pyramid_power(lobe, face), 0.0); }
-#else
-float passed(Lobe lobe, int face) { return flux_passed(lobe, face); }
-#endif
-
 // From the stored lobe to the one before it was rescaled, whose first number is its power.
 float unscaled(Lobe lobe) {
   if (!stored_rescaled || lobe_power(lobe) <= 0.0) return 1.0;
   float carried = 0.0;
-  for (int face = 0; face < 6; ++face) carried += passed(lobe, face);
+  for (int face = 0; face < 6; ++face) carried += flux_passed(lobe, face);
   return carried / lobe_power(lobe);
 }
 

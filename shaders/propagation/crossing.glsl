@@ -2,23 +2,21 @@
 #include "propagation/lobes.glsl"
 
 #if ORDER == 1
-float face_power(Lobe lobe, int face) { return pyramid_power(lobe, face); }
 Lobe lobe_of_side(int face) { return side_lobe(face); }
 
 // The part of a neighbour's lobe that crosses the face between: light that travels along `axis` by `sign`.
 Lobe crossing(Lobe lobe, int axis, float sign) {
   int component = sh_component(axis);
   float axial = lobe[component];
-  float power = PYRAMID_CONSTANT * lobe.x + sign * PYRAMID_AXIS * axial;
-  vec4 moved = PYRAMID_TRANSVERSE * lobe;
+  float power = FLUX_00 * lobe.x + sign * FLUX_01 * axial;
+  vec4 moved = FLUX_ACROSS_11 * lobe;
   moved.x = power;
-  moved[component] = sign * PYRAMID_AXIS * lobe.x + PYRAMID_AXIS_AXIS * axial;
-  return power > 0.0 ? moved : vec4(0.0);
+  moved[component] = sign * FLUX_10 * lobe.x + FLUX_11 * axial;
+  return power > FLUX_LEAST * lobe.x ? moved : dark_lobe();
 }
 
 void keep_power(inout Lobe lobe) { lobe *= clamp_rescale(lobe); }
 #else
-float face_power(Lobe lobe, int face) { return flux_passed(lobe, face); }
 Lobe lobe_of_side(int face) { return side_lobe_9(face); }
 
 // Component of `mid` that is the product of two axes: xy, yz, (20), xz.
@@ -49,7 +47,7 @@ Lobe crossing(Lobe lobe, int axis, float sign) {
 }
 
 void keep_power(inout Lobe lobe) {
-  float factor = clamp_rescale_9(lobe);
+  float factor = clamp_rescale(lobe);
   lobe = Lobe(factor * lobe.low, factor * lobe.mid, factor * lobe.high);
 }
 #endif
@@ -62,5 +60,5 @@ void keep_power(inout Lobes lobes) {
 }
 
 vec3 hit_power(Lobes lobes, int face) {
-  return max(vec3(face_power(lobes.red, face), face_power(lobes.green, face), face_power(lobes.blue, face)), vec3(0.0));
+  return vec3(flux_passed(lobes.red, face), flux_passed(lobes.green, face), flux_passed(lobes.blue, face));
 }

@@ -1,8 +1,8 @@
 #version 450 core
 // One pass of the `conservative` scheme over the volume, gathering (docs/theory.md#conservative). Every cell's lobe leaves
 // through its six faces by its power there, clamped at zero and rescaled to the lobe's power; blocked faces keep the share
-// tau for the side there. Gaitatzes 2010 section 4.2, eq. 8 gathers alike; we depart: exact pyramids (order 2: exact flux)
-// for cones, power kept, sides for axis mirrors.
+// tau for the side there. Gaitatzes 2010 section 4.2, eq. 8 gathers alike; we depart: the exact flux through
+// the face for a cone, power kept, sides for axis mirrors.
 // Set by the program: ORDER = 2
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"

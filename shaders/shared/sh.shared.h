@@ -1,5 +1,5 @@
-// Spherical harmonics up to band 2 and what the SH schemes integrate: `conservative` over a cell's six 90-degree
-// pyramids, lpv2009 over the faces of a neighbour, gaitatzes2010 over a 90-degree cone. Real, orthonormal, no
+// Spherical harmonics up to band 2 and what the SH schemes integrate: `conservative` the flux through a cell's six
+// faces, lpv2009 over the faces of a neighbour, gaitatzes2010 over a 90-degree cone. Real, orthonormal, no
 // Condon-Shortley sign; order 00, 1-1 (y), 10 (z), 11 (x), 2-2 (xy), 2-1 (yz), 20, 21 (xz), 22 (conventions). Lobes
 // here are coefficients of an intensity [W/sr] times sqrt(4 pi), so that the first number is the power [W] (before
 // clamp_rescale; a rescaled lobe carries the sum of what its faces pass): I(d) is
@@ -14,27 +14,30 @@ SHARED_BEGIN
 // Component of the lobe that belongs to an axis: x -> w, y -> y, z -> z.
 SHARED_FUNCTION int sh_component(int axis) { return axis == 0 ? 3 : axis; }
 
-// Power of the lobe inside the pyramid of `face`; can be negative, then the caller passes nothing.
-SHARED_FUNCTION float pyramid_power(vec4 lobe, int face) {
-  float axial = lobe[sh_component(face >> 1)];
-  return PYRAMID_CONSTANT * lobe.x + ((face & 1) != 0 ? PYRAMID_AXIS : -PYRAMID_AXIS) * axial;
+// Power of the lobe through `face` (FLUX_* of sh_constants.shared.h); below FLUX_LEAST of the lobe's it can be
+// negative: then nothing passes.
+SHARED_FUNCTION float flux_power(vec4 lobe, int face) {
+  return FLUX_00 * lobe.x + ((face & 1) != 0 ? FLUX_01 : -FLUX_01) * lobe[sh_component(face >> 1)];
+}
+
+// What really passes, lobe included.
+SHARED_FUNCTION float flux_passed(vec4 lobe, int face) {
+  float power = flux_power(lobe, face);
+  return power > FLUX_LEAST * lobe.x ? power : 0.0f;
 }
 
 // The six powers, clamped, sum to at least the lobe's power; this rescales the lobe so that they sum to it exactly.
 SHARED_FUNCTION float clamp_rescale(vec4 lobe) {
-  float c = PYRAMID_CONSTANT * lobe.x;
-  vec3 a = PYRAMID_AXIS * vec3(lobe.y, lobe.z, lobe.w);
-  vec3 lo = max(vec3(c) - a, vec3(0.0f));
-  vec3 hi = max(vec3(c) + a, vec3(0.0f));
-  float sum = lo.x + lo.y + lo.z + hi.x + hi.y + hi.z;
+  float sum = 0.0f;
+  for (int face = 0; face < 6; ++face) sum += flux_passed(lobe, face);
   return sum > 0.0f ? lobe.x / sum : 0.0f;
 }
 
-// What a surface on `face` of a cell sends into the cell: radiance uniform over the pyramid, as one sixth of isotropic
-// light would pass there (furnace: six such lobes sum to the isotropic one).
+// What a surface on `face` of a cell sends into the cell: cosine-distributed radiance of power 1, as one sixth of
+// isotropic light would pass there (furnace: six such lobes sum to the isotropic one).
 SHARED_FUNCTION vec4 side_lobe(int face) {
   vec4 lobe = vec4(1.0f, 0.0f, 0.0f, 0.0f);
-  lobe[sh_component(face >> 1)] = (face & 1) != 0 ? -6.0f * PYRAMID_AXIS : 6.0f * PYRAMID_AXIS;
+  lobe[sh_component(face >> 1)] = (face & 1) != 0 ? -6.0f * FLUX_10 : 6.0f * FLUX_10;
   return lobe;
 }
 
@@ -46,7 +49,7 @@ SHARED_FUNCTION vec4 sh_basis_2(vec3 d) {
 }
 SHARED_FUNCTION float sh_basis_22(vec3 d) { return 0.5f * SH_SQRT15 * (d.x * d.x - d.y * d.y); }
 
-// `conservative` of order 2: FLUX_* of sh_constants.shared.h.
+// Order 2.
 struct Lobe9 {
   vec4 low;    // 00, y, z, x
   vec4 mid;    // xy, yz, 20, xz
@@ -66,7 +69,6 @@ SHARED_FUNCTION vec2 from_axis(vec2 p, int axis) {
   return vec2(-0.5f * p.x - s * p.y, s * p.x - 0.5f * p.y);
 }
 
-// Power of the lobe through `face`; below FLUX_LEAST of the lobe's it can be negative: then nothing passes.
 SHARED_FUNCTION float flux_power(Lobe9 lobe, int face) {
   int axis = face >> 1;
   float axial = lobe.low[sh_component(axis)];
@@ -74,20 +76,18 @@ SHARED_FUNCTION float flux_power(Lobe9 lobe, int face) {
          FLUX_02 * about_axis(vec2(lobe.mid.z, lobe.high), axis).x;
 }
 
-// What really passes, lobe included.
 SHARED_FUNCTION float flux_passed(Lobe9 lobe, int face) {
   float power = flux_power(lobe, face);
   return power > FLUX_LEAST * lobe.low.x ? power : 0.0f;
 }
 
-// As clamp_rescale.
-SHARED_FUNCTION float clamp_rescale_9(Lobe9 lobe) {
+SHARED_FUNCTION float clamp_rescale(Lobe9 lobe) {
   float sum = 0.0f;
   for (int face = 0; face < 6; ++face) sum += flux_passed(lobe, face);
   return sum > 0.0f ? lobe.low.x / sum : 0.0f;
 }
 
-// As side_lobe: cosine-distributed radiance of power 1, one sixth of isotropic light.
+// As side_lobe.
 SHARED_FUNCTION Lobe9 side_lobe_9(int face) {
   int axis = face >> 1;
   Lobe9 lobe;

@@ -11,30 +11,18 @@ const float SH_SQRT5 = 2.2360680f;
 const float SH_SQRT15 = 3.8729833f;
 const float SH_HALF_SQRT3 = 0.86602540f;
 
-// Integrals over the pyramid |y|,|z| <= x (solid angle 4 pi/6), exact:
-//   int x    = 2 sqrt2 atan(1/sqrt2)        = 1.74083950...
-//   int x^2  = 2 pi/9 + 4 sqrt3/9           = 1.46793206...
-//   int y^2  = (4 pi/6 - int x^2) / 2       = 0.31323152...
-// Six pyramids tile the sphere: int x^2 + 2 int y^2 = 4 pi/6 (tests/propagation/sh_test.cpp).
-// Transfer of a lobe cut at the pyramid: M = int Y_i Y_j; axis-axis, axis-constant and transverse elements.
-const float PYRAMID_CONSTANT = 1.0f / 6.0f;
-const float PYRAMID_AXIS = 0.23994378f;        // sqrt3/(4 pi) * int x
-const float PYRAMID_AXIS_AXIS = 0.35044297f;   // 3/(4 pi) * int x^2
-const float PYRAMID_TRANSVERSE = 0.07477852f;  // 3/(4 pi) * int y^2
-
-// `conservative` of order 2 (docs/theory.md#conservative). Cut at pyramids a lobe of nine coefficients rings. Cells are
-// taken as holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half
-// sphere, which is smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a
-// lobe I stands for the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so
-// that int s Y_i is kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no
-// cross terms, by the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z
-// are:
+// `conservative` (docs/theory.md#conservative). Lobes cut at the pyramids over a cell's faces ring. Cells are taken as
+// holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half sphere, which is
+// smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a lobe I stands for
+// the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so that int s Y_i is
+// kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no cross terms, by
+// the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z are:
 //          00          10            20                            11        21 (xz)               22       2-2 (xy)
 //   00     1/6         sqrt3/9       sqrt5/24               11     1/8       sqrt5/15       22     1/9
 //   10     sqrt3/9     1/4           2 sqrt15/45            21     8sqrt5/125  1/5          2-2              1/10
 //   20     2 sqrt5/45  32 sqrt15/675 2/9
 // (1-1 and 2-1 as 11 and 21.) Through face -z elements between even and odd powers of z change sign. The six sum to the
-// identity (tests/propagation/sh_test.cpp).
+// identity (tests/propagation/sh_test.cpp). Order 1 takes the block of bands 0 and 1.
 const float FLUX_00 = 0.16666667f;  // row, column: bands of what comes out and of what goes in, about the face's axis
 const float FLUX_01 = 0.19245009f;
 const float FLUX_02 = 0.09316950f;
@@ -50,9 +38,9 @@ const float FLUX_ACROSS_21 = 0.14310835f;
 const float FLUX_ACROSS_22 = 0.2f;
 const float FLUX_TWIN = 0.11111111f;  // x^2 - y^2
 const float FLUX_DIAGONAL = 0.1f;     // xy
-// A face passes nothing below this part of the lobe's power. The power behind what a single side sends is exactly zero
-// (1/6 - 2/9 + 1/18) but what would be handed on with it is not: rounding must not decide. 2^-16: above rounding, too
-// little to see.
+// A face passes nothing below this part of the lobe's power. The power behind what a single side sends (order 2) or
+// behind what of it has crossed a face sideways (order 1: 1/6 1/6 - sqrt3/9 1/8 2/sqrt3) is exactly zero but what would
+// be handed on with it is not: rounding must not decide. 2^-16: above rounding, too little to see.
 const float FLUX_LEAST = 1.0f / 65536.0f;
 
 // A lobe of power 1 and of revolution about n has the coefficients z_l sqrt(4 pi) Y_lm(n) and the intensity

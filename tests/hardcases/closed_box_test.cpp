@@ -103,9 +103,8 @@ TEST(ClosedBox, OrdinatesCarryBouncesAfterTheFirst) {
   }
 }
 
-// Order 1 misses the 7 % that it should reach by 0.3 at albedo 0.7 (docs/results/volume.md); order 2 reaches it easily.
 TEST(ClosedBox, ConservativeCarriesBouncesAfterTheFirst) {
-  for (auto [order, limit] : {std::pair(1, 7.5), {2, 2.0}}) {
+  for (auto [order, limit] : {std::pair(1, 7.0), {2, 2.0}}) {
     SchemeOptions scheme;
     scheme.scheme = Scheme::conservative;
     scheme.sh_order = order;

@@ -123,9 +123,9 @@ TEST_P(ConservativeGl, RadianceOfAFurnace) {
     mean += glm::dvec3(sh[0][c]) / double(v.cells.size());
     for (size_t k = 1; k < sh.size(); ++k) uneven += glm::dvec3(sh[k][c]) / double(v.cells.size());
   }
-  // A pulse is not the steady state: clamp and rescale are not linear. Measured: -0.059 and 0.076 of order 1.
-  EXPECT_NEAR(mean.x / std::sqrt(4.0 * glm::pi<double>()), 1.0, 0.08);
-  EXPECT_NEAR(uneven.x, 0.0, 0.1);
+  // A pulse is not the steady state: clamp and rescale are not linear. Measured: 0.002 and 0.037 of order 1.
+  EXPECT_NEAR(mean.x / std::sqrt(4.0 * glm::pi<double>()), 1.0, 0.02);
+  EXPECT_NEAR(uneven.x, 0.0, 0.05);
 }
 
 // Passes are what a plain program in double precision makes of the scheme, transfers by quadrature.

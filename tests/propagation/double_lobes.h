@@ -16,7 +16,7 @@ using Lobe = std::array<double, 9>;
 
 class DoubleLobes {
  public:
-  DoubleLobes(const Voxels& voxels, int order) : voxels_(voxels), order_(order), count_(order == 1 ? 4 : 9) {
+  DoubleLobes(const Voxels& voxels, int order) : voxels_(voxels), count_(order == 1 ? 4 : 9) {
     integrate();
     lobes_.assign(3 * voxels.cells.size(), Lobe{});
     received.assign(voxels.sides.size(), glm::dvec3(0.0));
@@ -25,7 +25,7 @@ class DoubleLobes {
   void emit(const std::vector<glm::vec4>& sent) {
     for (size_t i = 0; i < sent.size(); ++i) {
       const Side& side = voxels_.sides[i];
-      // Isotropic light through the face opposite to the side's, of power 1: a sixth of the isotropic lobe cut there.
+      // Isotropic light through the face opposite to the side's, of power 1: a sixth of the isotropic lobe goes there.
       for (int band = 0; band < 3; ++band) {
         for (int k = 0; k < count_; ++k) {
           at(side.cell, band)[size_t(k)] +=
@@ -69,7 +69,7 @@ class DoubleLobes {
   }
   double passed(const Lobe& lobe, int face) const {
     const double power = through(lobe, face, 0);
-    return power > (order_ == 1 ? 0.0 : double(shared::FLUX_LEAST)) * lobe[0] ? power : 0.0;
+    return power > double(shared::FLUX_LEAST) * lobe[0] ? power : 0.0;
   }
   void rescale(Lobe& lobe) const {
     double sum = 0.0;
@@ -91,7 +91,7 @@ class DoubleLobes {
             0.5 * b * (d.x * d.x - d.y * d.y)};
   }
 
-  /// Order 1: what lies in the face's pyramid. Order 2: the flux through the face over the flux through all of them.
+  /// The flux through the face over the flux through all of them.
   void integrate() {
     constexpr int kSteps = 200;  // midpoints along an edge of the cube, error about 1e-5
     Lobe all{};
@@ -105,31 +105,29 @@ class DoubleLobes {
         d[(axis + 1) % 3] = u / r;
         d[(axis + 2) % 3] = v / r;
         const double measure = 4.0 / (kSteps * kSteps) / (r * r * r) / (4.0 * glm::pi<double>());
-        add(d, measure, pyramid, all);
+        add(d, measure, all);
       }
     }
-    if (order_ == 1) return;
     for (auto& face : transfer_) {
       for (size_t i = 0; i < 9; ++i) {
         for (size_t j = 0; j < 9; ++j) face[i][j] /= all[i];
       }
     }
   }
-  void add(glm::dvec3 d, double measure, int pyramid, Lobe& all) {
+  void add(glm::dvec3 d, double measure, Lobe& all) {
     const Lobe b = basis(d);
     for (size_t i = 0; i < 9; ++i) all[i] += measure * (std::abs(d.x) + std::abs(d.y) + std::abs(d.z)) * b[i] * b[i];
     for (int face = 0; face < 6; ++face) {
       const double flux = shared::face_sign(face) * d[shared::face_axis(face)];
-      const double part = order_ == 1 ? (face == pyramid ? 1.0 : 0.0) : std::max(flux, 0.0);
-      if (part == 0.0) continue;
+      if (flux <= 0.0) continue;
       for (size_t i = 0; i < 9; ++i) {
-        for (size_t j = 0; j < 9; ++j) transfer_[size_t(face)][i][j] += measure * part * b[i] * b[j];
+        for (size_t j = 0; j < 9; ++j) transfer_[size_t(face)][i][j] += measure * flux * b[i] * b[j];
       }
     }
   }
 
   const Voxels& voxels_;
-  int order_, count_;
+  int count_;
   std::array<std::array<Lobe, 9>, 6> transfer_{};  // [face][out][in]
   std::vector<Lobe> lobes_;                        // by cell and band
 };

@@ -104,11 +104,8 @@ inline VoxelGrid plate_in_void(int cells, int plate_cells) {
 class PlainPulse {
  public:
   PlainPulse(const VoxelGrid& voxels, int order)
-      : voxels_(voxels),
-        n_(order == 1 ? 4 : 9),
-        least_(order == 1 ? 0.0 : std::exp2(-16.0)),
-        lobes_(3 * cell_count(voxels.grid()) * size_t(n_), 0.0) {
-    make_transfer(order);
+      : voxels_(voxels), n_(order == 1 ? 4 : 9), lobes_(3 * cell_count(voxels.grid()) * size_t(n_), 0.0) {
+    make_transfer();
   }
 
   void begin(const Powers& sent) {
@@ -132,7 +129,7 @@ class PlainPulse {
         const double tau = has_side ? double(voxels_.sides()[side].coverage) : 0.0;
         for (int band = 0; band < 3; ++band) {
           const double power = row(face, 0, at(lobes_, cell, band));
-          if (power <= least_ * at(lobes_, cell, band)[0]) continue;
+          if (power <= kLeast * at(lobes_, cell, band)[0]) continue;
           if (has_side) received[side][band] += tau * power;
           if (has_side && reflect_hits)
             send(next, cell, face, band, tau * power * double(voxels_.sides()[side].albedo[band]));
@@ -170,22 +167,22 @@ class PlainPulse {
       double sum = 0.0;
       for (int face = 0; face < 6; ++face) {
         const double power = row(face, 0, &lobes[i]);
-        if (power > least_ * lobes[i]) sum += power;
+        if (power > kLeast * lobes[i]) sum += power;
       }
       const double factor = sum > 0.0 ? lobes[i] / sum : 0.0;
       for (int k = 0; k < n_; ++k) lobes[i + size_t(k)] *= factor;
     }
   }
-  void make_transfer(int order);
+  void make_transfer();
 
   const VoxelGrid& voxels_;
   int n_;
-  double least_;
+  static constexpr double kLeast = 0x1p-16;
   std::vector<double> lobes_;
   double transfer_[6][9][9] = {};
 };
 
-/// f(direction, solid angle, face of the pyramid that it lies in) over the sphere, midpoint rule in equal angles.
+/// f(direction, solid angle) over the sphere, midpoint rule in equal angles.
 template <class F>
 void over_sphere(const F& f) {
   constexpr int n = 256;
@@ -198,7 +195,7 @@ void over_sphere(const F& f) {
         d[face >> 1] = ((face & 1) != 0 ? 1.0 : -1.0) / r;
         d[((face >> 1) + 1) % 3] = u / r;
         d[((face >> 1) + 2) % 3] = v / r;
-        f(d, (1.0 + u * u) * (1.0 + v * v) / (r * r * r) * (M_PI * M_PI / 4.0) / double(n * n), face);
+        f(d, (1.0 + u * u) * (1.0 + v * v) / (r * r * r) * (M_PI * M_PI / 4.0) / double(n * n));
       }
     }
   }
@@ -217,16 +214,16 @@ inline void basis_at(glm::dvec3 d, double b[9]) {
   b[8] = std::sqrt(15.0) / 2.0 * (d.x * d.x - d.y * d.y);
 }
 
-inline void PlainPulse::make_transfer(int order) {
+inline void PlainPulse::make_transfer() {
   double norm[9] = {};
-  over_sphere([&](glm::dvec3 d, double solid_angle, int pyramid) {
+  over_sphere([&](glm::dvec3 d, double solid_angle) {
     double b[9];
     basis_at(d, b);
-    const double shown = order == 1 ? 1.0 : std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+    const double shown = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
     for (int k = 0; k < n_; ++k) norm[k] += shown * solid_angle / (4.0 * M_PI) * b[k] * b[k];
     for (int face = 0; face < 6; ++face) {
       const double along = (face & 1) != 0 ? d[face >> 1] : -d[face >> 1];
-      const double weight = order == 1 ? (pyramid == face ? 1.0 : 0.0) : std::max(along, 0.0);
+      const double weight = std::max(along, 0.0);
       for (int k = 0; k < n_ && weight > 0.0; ++k) {
         for (int j = 0; j < n_; ++j) transfer_[face][k][j] += weight * solid_angle / (4.0 * M_PI) * b[k] * b[j];
       }
