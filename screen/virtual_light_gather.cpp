@@ -112,7 +112,7 @@ void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_
   indirect_.bind_image(0, GL_WRITE_ONLY);
   direct_.bind_image(1, GL_WRITE_ONLY);
   list_.bind_storage(0);
-  gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
+  gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {8, 8, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

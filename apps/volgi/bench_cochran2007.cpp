@@ -14,29 +14,46 @@ namespace volgi::app {
 
 namespace {
 
-struct Timed {
-  Image image;
-  screen::FrameReport report;
-  double frame_ms = 0.0;
-  double gather_ms = 0.0;  // the passes that make light of virtual lights: gather and discontinuity
+/// A picture that is rendered again and again.
+class Repeated {
+ public:
+  Repeated(const Scene& scene, const gl::Context& context, const screen::FrameOptions& options)
+      : camera_(scene.cameras[0]), frame_(scene, options), timer_(context.software(), true) {}
+
+  void render() {
+    timer_.begin_frame();
+    frame_.render(camera_, timer_);
+    timer_.end_frame();
+  }
+  void forget_warm_up() { timer_.reset(); }
+  Image image() const { return screen::image_from_texture(frame_.radiance()); }
+  float coarse_share() const { return frame_.report().coarse_share; }
+  double frame_ms() const { return timer_.frame_time().median_ms; }
+  /// Of the passes that make light of virtual lights: gather and discontinuity.
+  double gather_ms() {
+    double sum = 0.0;
+    for (const auto& pass : timer_.medians()) {
+      if (pass.name == screen::VirtualLightGather::name || pass.name == screen::VirtualLightGather::discontinuity_name)
+        sum += pass.gpu_ms;
+    }
+    return sum;
+  }
+
+ private:
+  const Camera& camera_;
+  screen::Frame frame_;
+  gl::PassTimer timer_;
 };
 
-Timed render(const Scene& scene, const gl::Context& context, const screen::FrameOptions& options, int frames) {
-  screen::Frame frame(scene, options);
-  gl::PassTimer timer(context.software(), true);
+/// Frames of several pictures in turn, so that what else the machine does meets all alike.
+void render_in_turn(std::initializer_list<Repeated*> pictures, int frames) {
   constexpr int kWarmUp = 2;
   for (int f = 0; f < kWarmUp + frames; ++f) {
-    if (f == kWarmUp) timer.reset();
-    timer.begin_frame();
-    frame.render(scene.cameras[0], timer);
-    timer.end_frame();
+    for (Repeated* picture : pictures) {
+      if (f == kWarmUp) picture->forget_warm_up();
+      picture->render();
+    }
   }
-  Timed r{screen::image_from_texture(frame.radiance()), frame.report(), timer.frame_time().median_ms, 0.0};
-  for (const auto& pass : timer.medians()) {
-    if (pass.name == screen::VirtualLightGather::name || pass.name == screen::VirtualLightGather::discontinuity_name)
-      r.gather_ms += pass.gpu_ms;
-  }
-  return r;
 }
 
 /// Root mean square of the difference, in percent of the reference's largest value.
@@ -77,13 +94,14 @@ constexpr std::array<ShareRow, 4> kShares{
 nlohmann::json lights_table(const Scene& scene, const gl::Context& context, int frames) {
   nlohmann::json rows = nlohmann::json::array();
   for (const LightsRow& row : kLights) {
-    const Timed t = render(scene, context, options_of(row.vpls, row.negative), frames);
+    Repeated picture(scene, context, options_of(row.vpls, row.negative));
+    render_in_turn({&picture}, frames);
     rows.push_back({{"vpls", row.vpls},
                     {"negative", row.negative},
                     {"paper_fps", row.fps},
-                    {"frame_ms", t.frame_ms},
-                    {"gather_ms", t.gather_ms},
-                    {"coarse_share", t.report.coarse_share}});
+                    {"frame_ms", picture.frame_ms()},
+                    {"gather_ms", picture.gather_ms()},
+                    {"coarse_share", picture.coarse_share()}});
   }
   return rows;
 }
@@ -93,7 +111,9 @@ double threshold_for(const Scene& scene, const gl::Context& context, screen::Fra
   double low = 0.0, high = 2.0;
   for (int i = 0; i < 12; ++i) {
     options.gather.threshold_rad = float(0.5 * (low + high));
-    const float reached = render(scene, context, options, 1).report.coarse_share;
+    Repeated picture(scene, context, options);
+    picture.render();
+    const float reached = picture.coarse_share();
     (reached < share ? low : high) = 0.5 * (low + high);
   }
   return high;
@@ -103,16 +123,16 @@ nlohmann::json share_table(const Scene& scene, const gl::Context& context, int f
   screen::FrameOptions full = options_of(100, 50);
   full.light = screen::LightPart::indirect;
   full.gather.stride = 1;
-  const Timed every_pixel = render(scene, context, full, frames);
   nlohmann::json rows = nlohmann::json::array();
   const auto add = [&](const std::string& what, const screen::FrameOptions& o, const ShareRow* paper) {
-    const Timed t = render(scene, context, o, frames);
+    Repeated every_pixel(scene, context, full), picture(scene, context, o);
+    render_in_turn({&every_pixel, &picture}, frames);
     nlohmann::json row = {{"what", what},
-                          {"coarse_share", t.report.coarse_share},
-                          {"rms_percent", rms_percent_of_range(every_pixel.image, t.image)},
-                          {"frame_ms", t.frame_ms},
-                          {"gather_ms", t.gather_ms},
-                          {"gather_speedup", every_pixel.gather_ms / t.gather_ms}};
+                          {"coarse_share", picture.coarse_share()},
+                          {"rms_percent", rms_percent_of_range(every_pixel.image(), picture.image())},
+                          {"frame_ms", picture.frame_ms()},
+                          {"gather_ms", picture.gather_ms()},
+                          {"gather_speedup", every_pixel.gather_ms() / picture.gather_ms()}};
     if (paper != nullptr)
       row["paper"] = {{"share", paper->share}, {"rms_percent", paper->rms_percent}, {"fps", paper->fps}};
     rows.push_back(std::move(row));

@@ -21,18 +21,28 @@ uniform int with_direct;
 
 const float PI = 3.14159265358979;
 
-struct Surface {
+struct Coarse {
   vec3 position, normal;
+  vec3 indirect, direct;
+  bool background;
 };
 
 // The threshold is an angle [rad]: between the normals, and of the way between the points with the tangent plane.
-bool alike(Surface here, vec3 position, vec3 normal) {
-  vec3 way = position - here.position;
+bool alike(vec3 position, vec3 normal, Coarse there) {
+  vec3 way = there.position - position;
   float squared = dot(way, way);
-  vec3 bend = normal - here.normal;
-  float off_plane = dot(way, here.normal);
+  vec3 bend = there.normal - normal;
+  float off_plane = dot(way, normal);
   return dot(bend, bend) <= threshold * threshold && off_plane * off_plane <= threshold * threshold * squared &&
          squared <= unlike_distance_m * unlike_distance_m;
+}
+
+Coarse coarse_at(ivec2 texel, ivec2 size) {
+  ivec2 pixel = pixel_of_coarse(texel, size);
+  vec4 irradiance = texelFetch(coarse_indirect, texel, 0);
+  return Coarse(texelFetch(position_map, pixel, 0).xyz, octahedral_decode(texelFetch(normal_map, pixel, 0).xy),
+                irradiance.rgb, with_direct != 0 ? texelFetch(coarse_direct, texel, 0).rgb : vec3(0.0),
+                irradiance.w == 0.0);
 }
 
 void list(ivec2 pixel) {
@@ -45,48 +55,48 @@ void list(ivec2 pixel) {
   listed[slot] = pack_pixel(pixel);
 }
 
-void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  ivec2 size = textureSize(position_map, 0);
-  if (any(greaterThanEqual(pixel, size))) return;
-  vec4 position = texelFetch(position_map, pixel, 0);
-  imageStore(indirect_radiance, pixel, vec4(0.0));
-  if (with_direct != 0) imageStore(direct_radiance, pixel, vec4(0.0));
-  if (position.w == 0.0) return;
-  Surface here = Surface(position.xyz, octahedral_decode(texelFetch(normal_map, pixel, 0).xy));
-
-  ivec2 low = pixel / stride;
-  ivec2 from = pixel_of_coarse(low, size);
-  vec2 t = vec2(pixel - from) / vec2(max(pixel_of_coarse(low + 1, size) - from, ivec2(1)));
-  vec3 indirect = vec3(0.0), direct = vec3(0.0), least = vec3(1e30), most = vec3(0.0);
+// Light of a pixel from those of the four coarse ones around it that have weight. False where it differs from any.
+bool interpolate(ivec2 pixel, ivec2 size, Coarse around[4], vec2 t, out vec3 indirect, out vec3 direct) {
+  vec3 position = texelFetch(position_map, pixel, 0).xyz;
+  vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).xy);
+  vec3 least = vec3(1e30), most = vec3(0.0);
+  indirect = direct = vec3(0.0);
   for (int k = 0; k < 4; ++k) {
-    ivec2 corner = ivec2(k & 1, k >> 1);
-    vec2 w = mix(1.0 - t, t, vec2(corner));
+    vec2 w = mix(1.0 - t, t, vec2(k & 1, k >> 1));
     float weight = w.x * w.y;
     if (weight == 0.0) continue;
-    ivec2 coarse_pixel = pixel_of_coarse(low + corner, size);
-    vec4 there = texelFetch(coarse_indirect, low + corner, 0);
-    if (there.w == 0.0 || (coarse_pixel != pixel &&
-                           !alike(here, texelFetch(position_map, coarse_pixel, 0).xyz,
-                                  octahedral_decode(texelFetch(normal_map, coarse_pixel, 0).xy)))) {
-      list(pixel);
-      return;
-    }
-    indirect += weight * there.rgb;
-    vec3 all = there.rgb;
-    if (with_direct != 0) {
-      vec3 d = texelFetch(coarse_direct, low + corner, 0).rgb;
-      direct += weight * d;
-      all += d;
-    }
-    least = min(least, all);
-    most = max(most, all);
+    if (around[k].background || (weight < 1.0 && !alike(position, normal, around[k]))) return false;
+    indirect += weight * around[k].indirect;
+    direct += weight * around[k].direct;
+    least = min(least, around[k].indirect + around[k].direct);
+    most = max(most, around[k].indirect + around[k].direct);
   }
-  if (any(greaterThan(most - least, contrast * most))) {
+  return all(lessThanEqual(most - least, contrast * most));
+}
+
+void light_pixel(ivec2 pixel, ivec2 size, Coarse around[4], vec2 t) {
+  vec3 indirect = vec3(0.0), direct = vec3(0.0);
+  bool background = texelFetch(position_map, pixel, 0).w == 0.0;
+  if (!background && !interpolate(pixel, size, around, t, indirect, direct)) {
     list(pixel);
     return;
   }
-  vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / PI;
+  vec3 reflectance = background ? vec3(0.0) : texelFetch(albedo_map, pixel, 0).rgb / PI;
   imageStore(indirect_radiance, pixel, vec4(reflectance * indirect, 1.0));
   if (with_direct != 0) imageStore(direct_radiance, pixel, vec4(reflectance * direct, 1.0));
+}
+
+// One thread for the pixels between four coarse ones; the last row and column have coarse pixels of their own.
+void main() {
+  ivec2 low = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = textureSize(position_map, 0);
+  ivec2 last = textureSize(coarse_indirect, 0) - 1;
+  if (any(greaterThan(low, last))) return;
+  ivec2 from = pixel_of_coarse(low, size);
+  Coarse around[4];
+  for (int k = 0; k < 4; ++k) around[k] = coarse_at(min(low + ivec2(k & 1, k >> 1), last), size);
+  ivec2 step = max(pixel_of_coarse(low + 1, size) - from, ivec2(1));
+  for (int y = 0; y < step.y; ++y) {
+    for (int x = 0; x < step.x; ++x) light_pixel(from + ivec2(x, y), size, around, vec2(x, y) / vec2(step));
+  }
 }
