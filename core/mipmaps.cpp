@@ -80,4 +80,14 @@ glm::vec4 Mipmaps::sample(int texture, glm::vec2 uv, float lod, bool srgb) const
   return glm::mix(level(first, nearest), level(std::min(first + 1, coarsest), nearest), clamped - float(first));
 }
 
+size_t Mipmaps::bytes() const {
+  size_t sum = 0;
+  for (const auto& chains : chains_) {
+    for (const Chain& chain : chains) {
+      for (const MipLevel& level : chain) sum += level.texels.size() * sizeof(glm::vec4);
+    }
+  }
+  return sum;
+}
+
 }  // namespace volgi

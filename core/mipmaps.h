@@ -31,6 +31,8 @@ class Mipmaps {
   /// the texture's sampler says. The texture must have been prepared.
   glm::vec4 sample(int texture, glm::vec2 uv, float lod, bool srgb) const;
 
+  size_t bytes() const;
+
  private:
   using Chain = std::vector<MipLevel>;
 

@@ -6,7 +6,9 @@ namespace volgi {
 
 /// When the solver stops: its rules apart from where it runs (docs/theory.md#orders).
 struct BounceRules {
-  /// Reflections to carry: N orders for punctual light, N+1 for emission, whose arrival is bounce 0. None: all of them.
+  /// Reflections to carry: N orders for punctual light, N+1 for emission, whose arrival is bounce 0. After a first
+  /// bounce on the screen it is one less than asked for: what virtual lights bring to sides and those reflect arrives
+  /// again as bounce 2 of punctual light, N-1 orders, but as bounce 1 of emission, N orders. None: all of them.
   std::optional<int> bounces;
   /// Passes over the volume: of each order with `bounces`, else in all, with reflections in flight together. Schemes
   /// that carry an order in one pass take it as the most orders.

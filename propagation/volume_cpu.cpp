@@ -7,6 +7,7 @@
 #include "core/surface.h"
 #include "core/visibility/light_flux.h"
 #include "propagation/ordinates.h"
+#include "propagation/side_gather.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -71,11 +72,14 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
     : scene_(scene),
       options_(options),
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
-      rules_(bounce_rules(options, largest_albedo(scene))) {
+      rules_(bounce_rules(options, largest_albedo(scene))),
+      mipmaps_(voxelization_mipmaps(scene)) {
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options.scheme), "CPU");
-  if (!scene.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene);
+  const bool first_bounce = options.source == VolumeOptions::Source::first_bounce;
+  if (first_bounce) emitters_ = std::make_unique<EmitterPoints>(scene);
+  if (!scene.lights.empty() || (first_bounce && !emitters_->empty())) embree_ = std::make_unique<EmbreeScene>(scene);
 }
 
 VolumeCpu::~VolumeCpu() = default;
@@ -89,15 +93,15 @@ void VolumeCpu::run() {
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
-  VoxelGrid fresh = voxelize_cpu(scene_, grid_);
+  VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
   // A scene that stands still keeps its transport, with what is in flight in it.
   if ((bounces_ || pulse_) && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
   const bool coarse = options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start &&
                       std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
-  if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_));
+  if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (papers) {
-    cells_ = cell_volumes_cpu(scene_, grid_);
+    cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolume>(voxels_, cells_, options_.scheme);
   } else {
     auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr);
@@ -110,6 +114,14 @@ void VolumeCpu::voxelize() {
 }
 
 void VolumeCpu::light_in() {
+  if (options_.source == VolumeOptions::Source::first_bounce) {
+    first_bounce_in();
+  } else {
+    direct_light_in();
+  }
+}
+
+void VolumeCpu::direct_light_in() {
   flux_.emitted.assign(voxels_.side_count(), glm::vec4(0.0f));
   flux_.punctual.assign(voxels_.side_count(), glm::vec4(0.0f));
   flux_.lost = glm::vec3(0.0f);
@@ -117,6 +129,27 @@ void VolumeCpu::light_in() {
   emits_ = !pieces.empty();
   deposit(voxels_, pieces, flux_.emitted, flux_.lost);
   if (embree_) deposit(voxels_, light_flux(*embree_, light_texels(grid_)), flux_.punctual, flux_.lost);
+}
+
+/// What virtual lights bring to the sides. Where orders are counted, emission's goes in apart: it has one order more.
+void VolumeCpu::first_bounce_in() {
+  flux_.emitted.assign(voxels_.side_count(), glm::vec4(0.0f));
+  flux_.punctual = flux_.emitted;
+  flux_.lost = glm::vec3(0.0f);
+  emits_ = false;
+  if (!embree_ || options_.bounces == 0) return;
+  virtual_lights_ = virtual_lights_cpu(*embree_, *emitters_, options_.virtual_lights);
+  const std::span<const shared::VirtualLight> all = virtual_lights_.lights;
+  const auto brought_by = [&](std::span<const shared::VirtualLight> lights) {
+    return reflected_flux(voxels_, side_gather(voxels_, *embree_, lights, options_.virtual_light_stride));
+  };
+  if (!options_.bounces || !carries_sides(options_.scheme.scheme)) {
+    flux_.punctual = brought_by(all);
+    return;
+  }
+  flux_.punctual = brought_by(all.first(size_t(virtual_lights_.reflected)));
+  emits_ = virtual_lights_.emitted() > 0;
+  if (emits_) flux_.emitted = brought_by(all.subspan(size_t(virtual_lights_.reflected)));
 }
 
 void VolumeCpu::propagate() {
@@ -130,11 +163,18 @@ void VolumeCpu::propagate() {
 }
 
 void VolumeCpu::irradiate() {
-  if (bounces_) irradiance_ = side_irradiance(voxels_, flux_, *bounces_);
+  if (!bounces_) return;
+  irradiance_ = side_irradiance(voxels_, flux_, *bounces_);
+  if (options_.source == VolumeOptions::Source::lights || !emits_) return;
+  // The first arrival in the volume is emission's bounce 1.
+  for (size_t i = 0; i < irradiance_.indirect.size(); ++i) {
+    irradiance_.indirect[i] += glm::vec4(glm::vec3(irradiance_.direct[i]), 0.0f);
+    irradiance_.direct[i] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+  }
 }
 
 const CellVolumes& VolumeCpu::cells() {
-  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_);
+  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
   return cells_;
 }
 
@@ -145,8 +185,9 @@ RadianceVolume VolumeCpu::radiance() {
 }
 
 size_t VolumeCpu::bytes() const {
-  size_t sum = voxels_.bytes() + half_voxels_.bytes();
+  size_t sum = mipmaps_.bytes() + voxels_.bytes() + half_voxels_.bytes();
   sum += (flux_.emitted.size() + flux_.punctual.size()) * sizeof(glm::vec4);
+  sum += virtual_lights_.lights.size() * sizeof(shared::VirtualLight);
   if (bounces_) sum += bounces_->transport().bytes() + 4 * voxels_.side_count() * sizeof(glm::vec4);
   if (pulse_) sum += pulse_->bytes();
   return sum;

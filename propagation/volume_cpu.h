@@ -1,8 +1,10 @@
 #pragma once
 #include <memory>
 
+#include "core/mipmaps.h"
 #include "core/scene.h"
 #include "core/visibility/embree_scene.h"
+#include "core/visibility/virtual_lights_cpu.h"
 #include "propagation/bounces.h"
 #include "propagation/pulse_volume.h"
 #include "propagation/volume_options.h"
@@ -23,15 +25,19 @@ class VolumeCpu {
   void run();
   // The stages of run(), in this order.
   void voxelize();
-  void light_in();
+  void light_in();  // as options.source says
   void propagate();
   void irradiate();
 
   const Grid& grid() const { return grid_; }
   const VoxelGrid& voxels() const { return voxels_; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
+  /// After a first bounce: of what virtual lights brought; all of it counts as `punctual` unless orders are counted.
   const SideFlux& flux() const { return flux_; }
-  const SideIrradiance& irradiance() const { return irradiance_; }  // of schemes that carry sides
+  /// Of schemes that carry sides. After a first bounce on the screen `indirect` holds bounces 2 ... n of punctual light
+  /// and 1 ... n of emission, `direct` nothing.
+  const SideIrradiance& irradiance() const { return irradiance_; }
+  const VirtualLightsCpu& virtual_lights() const { return virtual_lights_; }  // of Source::first_bounce
   const BounceReport& report() const { return report_; }
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
   RadianceVolume radiance();
@@ -39,11 +45,17 @@ class VolumeCpu {
   size_t bytes() const;
 
  private:
+  void direct_light_in();
+  void first_bounce_in();
+
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;
   BounceRules rules_;
   std::unique_ptr<EmbreeScene> embree_;
+  std::unique_ptr<EmitterPoints> emitters_;  // of Source::first_bounce
+  VirtualLightsCpu virtual_lights_;
+  Mipmaps mipmaps_;  // of the scene, for all its frames
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;
   SideFlux flux_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.h"
 
 namespace volgi {
@@ -13,8 +15,12 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
     if (o.warm_start || o.passes_a_run)
       throw Error(ExitCode::usage, "the papers' schemes start every frame anew: no warm start, no amortised frames");
   }
+  if (o.virtual_lights < 1 || o.virtual_light_stride < 1)
+    throw Error(ExitCode::usage, "first bounce: at least one virtual light, and a stride of at least 1, are needed");
   BounceRules rules;
   rules.bounces = o.bounces;
+  // The screen carries one; emission has one order more, whose arrival is then bounce 1 (BounceRules::bounces).
+  if (rules.bounces && o.source == VolumeOptions::Source::first_bounce) rules.bounces = std::max(*rules.bounces - 1, 0);
   rules.iterations = o.iterations;
   rules.solver = o.solver;
   rules.warm_start = o.warm_start;

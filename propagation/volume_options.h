@@ -18,6 +18,12 @@ struct VolumeOptions {
   BounceRules::Solver solver = BounceRules::Solver::automatic;
   bool warm_start = false;
   std::optional<int> passes_a_run;
+  /// What the volume starts from. lights: direct light, and it carries all of the rest. first_bounce: the irradiance of
+  /// virtual lights at its sides, where the screen carries the first bounce of punctual light and the arrival of
+  /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (techniques, "Composition").
+  enum class Source { lights, first_bounce } source = Source::lights;
+  int virtual_lights = 1024;      // of first_bounce
+  int virtual_light_stride = 17;  // each side takes every so many of them (propagation/side_gather.h)
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 

@@ -11,9 +11,9 @@ struct BounceBudget {
   Carrier higher_bounces = Carrier::nobody;
 };
 
-/// Techniques that --gi can name. `vpl` and `negative` are first-order: of emissive surfaces they carry the arrival, of
-/// punctual lights the first reflection, and nothing after it.
-enum class GiMode { none, volume, vpl, negative };
+/// Techniques that --gi can name. `vpl`, `negative` and `val` are first-order: of emissive surfaces they carry the
+/// arrival, of punctual lights the first reflection, and nothing after it.
+enum class GiMode { none, volume, vpl, negative, val };
 
 inline BounceBudget bounce_budget(GiMode mode) {
   using Carrier = BounceBudget::Carrier;
@@ -24,6 +24,7 @@ inline BounceBudget bounce_budget(GiMode mode) {
       return {Carrier::volume, Carrier::volume, Carrier::volume};
     case GiMode::vpl:
     case GiMode::negative:
+    case GiMode::val:
       return {Carrier::virtual_lights, Carrier::virtual_lights, Carrier::nobody};
   }
   return {};

@@ -43,7 +43,8 @@ void warn_of_missing_light(const Scene& scene, const FrameOptions& options, cons
   if (budget.emission_arrival == BounceBudget::Carrier::nobody) {
     warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
   } else if (budget.higher_bounces == BounceBudget::Carrier::nobody && !direct_only(options)) {
-    warn_once(scene.name + ": light of emissive surfaces is not reflected with --gi vpl and negative; take volume");
+    warn_once(scene.name +
+              ": light of emissive surfaces is not reflected with --gi vpl, negative and val; take volume");
   }
 }
 
@@ -67,22 +68,46 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
     volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
                                             : make_volume_on_cpu(scene, options_.volume, options_.size);
   }
-  if (budget_.first_bounce == BounceBudget::Carrier::virtual_lights && needs_carrier(scene, options_)) {
-    virtual_lights_ = std::make_unique<VirtualLights>(scene, candidate_options(options_));
-    if (options_.choose_one_of > 1)
-      choose_virtual_lights_ = std::make_unique<ChooseVirtualLights>(options_.choose_one_of);
-    virtual_light_gather_ = std::make_unique<VirtualLightGather>(options_.size, options_.gather);
-    if (options_.gi == GiMode::negative && !direct_only(options_)) make_negative_lights();
-  }
+  if (budget_.first_bounce == BounceBudget::Carrier::virtual_lights && needs_carrier(scene, options_))
+    make_first_bounce();
   warn_of_missing_light(scene, options_, budget_);
 }
 
 Frame::~Frame() = default;
 
-void Frame::make_negative_lights() {
+void Frame::make_first_bounce() {
+  virtual_lights_ = std::make_unique<VirtualLights>(scene_, candidate_options(options_));
+  if (options_.choose_one_of > 1)
+    choose_virtual_lights_ = std::make_unique<ChooseVirtualLights>(options_.choose_one_of);
+  if (options_.gi == GiMode::val) {
+    area_lights_ = std::make_unique<VirtualAreaLights>(options_.area_lights);
+    area_light_maps_ = std::make_unique<ParaboloidDepthMaps>(options_.area_light_map, options_.area_lights.count);
+    area_light_shadow_ =
+        AreaLightShadow::make(options_.area_light_shadow, options_.area_light_map, options_.area_lights.count);
+    area_light_gather_ =
+        std::make_unique<AreaLightGather>(options_.size, options_.area_light_gather, *area_light_shadow_);
+    return;
+  }
+  virtual_light_gather_ = std::make_unique<VirtualLightGather>(options_.size, options_.gather);
+  if (options_.gi != GiMode::negative || direct_only(options_)) return;
   negative_lights_ = std::make_unique<NegativeLights>(options_.negative_lights);
   if (options_.negative_lights.method == NegativeLightOptions::Method::sides)
     voxels_ = make_frame_voxels(scene_, options_.volume, runs_on_gpu(options_.backend));
+}
+
+void Frame::light_by_virtual_lights(const VirtualLightListGl& lights, const Camera& camera, gl::PassTimer& timer) {
+  if (voxels_) voxels_->run(buffers_, timer);
+  if (negative_lights_) negative_lights_->run(gbuffer_, camera, lights, voxels_ ? &voxels_->voxels() : nullptr, timer);
+  const auto part = direct_only(options_) ? VirtualLightGather::Part::emitted : VirtualLightGather::Part::all;
+  virtual_light_gather_->run(gbuffer_, lights, negative_lights_.get(), part, scene_diagonal_m(), timer);
+}
+
+void Frame::light_by_area_lights(const VirtualLightListGl& lights, gl::PassTimer& timer) {
+  area_lights_->run(lights.buffer, lights.count(), scene_diagonal_m(), timer);
+  area_light_maps_->run(buffers_, *area_lights_, timer);
+  area_light_shadow_->run(*area_light_maps_, timer);
+  area_light_gather_->run(gbuffer_, lights, *area_lights_, *area_light_maps_, *area_light_shadow_, scene_diagonal_m(),
+                          timer);
 }
 
 void Frame::render(const Camera& camera, gl::PassTimer& timer) {
@@ -92,14 +117,11 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   if (virtual_lights_) {
     virtual_lights_->run(shadow_maps_, timer);
     if (choose_virtual_lights_) choose_virtual_lights_->run(virtual_lights_->list(), gbuffer_, timer);
-    const VirtualLightListGl& lights = light_list();
-    if (negative_lights_) {
-      if (voxels_) voxels_->run(buffers_, timer);
-      negative_lights_->run(gbuffer_, camera, lights, voxels_ ? &voxels_->voxels() : nullptr, timer);
+    if (area_lights_) {
+      light_by_area_lights(light_list(), timer);
+    } else {
+      light_by_virtual_lights(light_list(), camera, timer);
     }
-    const auto part = direct_only(options_) ? VirtualLightGather::Part::emitted : VirtualLightGather::Part::all;
-    virtual_light_gather_->run(gbuffer_, lights, negative_lights_.get(), part,
-                               glm::distance(scene_.bounds_min, scene_.bounds_max), timer);
   }
   direct_.run(gbuffer_, shadow_maps_, timer);
 
@@ -110,8 +132,10 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
     layers.indirect.push_back(&volume_->indirect());
   }
   if (virtual_lights_) {
-    layers.direct.push_back(&virtual_light_gather_->direct());
-    if (!direct_only(options_)) layers.indirect.push_back(&virtual_light_gather_->indirect());
+    const bool by_area = area_light_gather_ != nullptr;
+    layers.direct.push_back(by_area ? &area_light_gather_->direct() : &virtual_light_gather_->direct());
+    if (!direct_only(options_))
+      layers.indirect.push_back(by_area ? &area_light_gather_->indirect() : &virtual_light_gather_->indirect());
   }
   compose_.run(gbuffer_, layers, options_.light, timer);
 }
@@ -133,9 +157,16 @@ FrameReport Frame::report() const {
   }
   if (virtual_lights_) {
     r.virtual_lights = light_list().count();
+    r.memory_bytes += virtual_lights_->bytes() + (choose_virtual_lights_ ? choose_virtual_lights_->bytes() : 0);
+  }
+  if (virtual_light_gather_) {
     r.coarse_share = virtual_light_gather_->coarse_share();
-    r.memory_bytes += virtual_lights_->bytes() + virtual_light_gather_->bytes() +
-                      (choose_virtual_lights_ ? choose_virtual_lights_->bytes() : 0);
+    r.memory_bytes += virtual_light_gather_->bytes();
+  }
+  if (area_lights_) {
+    r.area_lights = area_lights_->count();
+    r.memory_bytes +=
+        area_lights_->bytes() + area_light_maps_->bytes() + area_light_shadow_->bytes() + area_light_gather_->bytes();
   }
   if (negative_lights_) {
     r.negative_lights = negative_lights_->count();

@@ -4,6 +4,7 @@
 
 #include "core/gl/pass_timer.h"
 #include "propagation/volume_options.h"
+#include "screen/area_light_gather.h"
 #include "screen/bounce_budget.h"
 #include "screen/choose_virtual_lights.h"
 #include "screen/compose.h"
@@ -35,6 +36,10 @@ struct FrameOptions {
       8;  // of so many candidates the virtual light that matters to the picture; 1: take them as they come
   NegativeLightOptions negative_lights;
   GatherOptions gather;
+  VirtualAreaLightOptions area_lights;
+  AreaLightShadow::Method area_light_shadow = AreaLightShadow::Method::percentage_closer;
+  int area_light_map = 256;  // texels on each side of an area light's map
+  AreaLightGatherOptions area_light_gather;
 };
 
 /// What a frame was made of, for --stats.
@@ -42,6 +47,7 @@ struct FrameReport {
   VolumeReport volume;
   int virtual_lights = 0;
   int negative_lights = 0;
+  int area_lights = 0;
   float coarse_share = 0.0f;  // of the pixels whose light comes from coarse ones
   size_t memory_bytes = 0;    // of GL objects, and of the volume wherever it lies
 };
@@ -65,7 +71,10 @@ class Frame {
   VirtualLightList virtual_lights() const;
 
  private:
-  void make_negative_lights();
+  void make_first_bounce();
+  void light_by_area_lights(const VirtualLightListGl& lights, gl::PassTimer& timer);
+  void light_by_virtual_lights(const VirtualLightListGl& lights, const Camera& camera, gl::PassTimer& timer);
+  float scene_diagonal_m() const { return glm::distance(scene_.bounds_min, scene_.bounds_max); }
   const VirtualLightListGl& light_list() const;
 
   const Scene& scene_;
@@ -83,6 +92,10 @@ class Frame {
   std::unique_ptr<FrameVoxels> voxels_;
   std::unique_ptr<NegativeLights> negative_lights_;
   std::unique_ptr<VirtualLightGather> virtual_light_gather_;
+  std::unique_ptr<VirtualAreaLights> area_lights_;
+  std::unique_ptr<ParaboloidDepthMaps> area_light_maps_;
+  std::unique_ptr<AreaLightShadow> area_light_shadow_;
+  std::unique_ptr<AreaLightGather> area_light_gather_;
 };
 
 }  // namespace volgi::screen

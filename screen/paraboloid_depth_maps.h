@@ -10,13 +10,17 @@ namespace volgi::screen {
 /// Pass "screen/paraboloid_depth_maps": what every virtual area light sees of the scene, in one layer each. All layers
 /// are made together, from triangles by a compute shader that meets each texel's own ray with the triangle's plane: a
 /// paraboloid bends edges, and a rasterizer's straight ones would tear large triangles and those that cross the rim.
-/// Cost: triangles times layers, and texels covered.
+/// Surfaces whose plane passes through the area light, as its own does, are not seen. Alpha: MASK and BLEND (hashed) as
+/// in raster passes. Deterministic. Cost: triangles times layers, and texels covered.
 class ParaboloidDepthMaps {
  public:
   static constexpr const char* name = "screen/paraboloid_depth_maps";
+  /// @param resolution texels on each side of a layer, up to 4096.
   ParaboloidDepthMaps(int resolution, int layers);
 
   void run(const gl::SceneBuffers& scene, const VirtualAreaLights& lights, gl::PassTimer& timer);
+  /// The same from shared::VirtualAreaLight x count; layers beyond are empty.
+  void run(const gl::SceneBuffers& scene, const gl::Buffer& area_lights, int count, gl::PassTimer& timer);
 
   int resolution() const { return resolution_; }
   int layers() const { return layers_; }
@@ -26,8 +30,15 @@ class ParaboloidDepthMaps {
   size_t bytes() const;
 
  private:
+  struct Programs {
+    gl::Program triangles, tiles;
+  };
+  void draw(const Programs& programs, const gl::SceneBuffers::Triangles& triangles, int layers) const;
+
   int resolution_, layers_;
   gl::Texture distance_;
+  gl::Buffer tiles_;  // of large triangles: TileListHead, then uvec2 each
+  Programs opaque_, alpha_;
 };
 
 }  // namespace volgi::screen

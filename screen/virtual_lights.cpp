@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/halton.h"
 #include "core/hilbert.h"
+#include "core/light_cone.h"
 
 namespace volgi::screen {
 namespace {
@@ -25,24 +26,6 @@ const VirtualLightOptions& checked(const VirtualLightOptions& options) {
                                      std::to_string(VirtualLightOptions::kMost));
   }
   return options;
-}
-
-/// 1 - cos of half the cone that a light fills.
-double cone_height(const Light& light) {
-  if (light.type == Light::Type::point) return 2.0;
-  const double s = std::sin(0.5 * double(light.outer_cone_rad));
-  return 2.0 * s * s;
-}
-
-/// The shortest turn that takes -Y to `direction` (unit): (0, -1, 0) x direction = (-z, 0, x) is its axis. Straight up
-/// all turns are as short; half a turn about X is taken.
-glm::mat3 world_from_axis(glm::dvec3 d) {
-  const double across = d.x * d.x + d.z * d.z;
-  if (d.y > 0.0 && across < 1e-30) return glm::mat3(1, 0, 0, 0, -1, 0, 0, 0, -1);
-  const double k = d.y > 0.0 ? (1.0 + d.y) / across : 1.0 / (1.0 - d.y);  // 1 / (1 - y), without cancellation
-  return glm::mat3(glm::dmat3(1.0 - k * d.x * d.x, d.x, -k * d.x * d.z,   // columns
-                              -d.x, -d.y, -d.z,                           //
-                              -k * d.x * d.z, d.z, 1.0 - k * d.z * d.z));
 }
 
 std::vector<glm::vec4> samples_of(const Light& light, Sampling sampling, int count) {

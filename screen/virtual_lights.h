@@ -6,9 +6,9 @@
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "core/light_shares.h"
 #include "core/scene.h"
 #include "core/virtual_light_list.h"
-#include "screen/light_shares.h"
 #include "screen/reflective_shadow_map.h"
 #include "screen/virtual_light_list_gl.h"
 

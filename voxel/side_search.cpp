@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+
 #include <cmath>
+#include "voxel/side_search_around.h"
+#include "voxel/side_search_internal.h"
 
 namespace volgi {
 
 namespace {
-
-/// shared::face_of_depth in integers, where baseline x86-64 has no instruction for floor.
-int face_of_depth(float depth) {
-  const float scaled = depth * 8192.0f + 0.5f;
-  const int truncated = int(scaled);
-  return (truncated - (float(truncated) > scaled ? 1 : 0) + 4096) >> 13;
-}
 
 /// Numbers of bits of 0 ... 31.
 constexpr std::array<std::uint8_t, 32> kBitCount = [] {
@@ -27,10 +24,14 @@ constexpr std::array<std::uint8_t, 32> kBitCount = [] {
 constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
 constexpr float kOneLayer = 0.02f;           // cells: layers nearer than this count as one
 constexpr float kFarthest = 3.0f;            // cells along the axis
+constexpr float kLeastShare = 1e-3f;         // of the normal along an axis that is asked
+
+/// Whether a depth on the axis is farther than that from all points of a cell.
+bool farther(float low, float depth) { return !(std::max(low - depth, depth - (low + 1.0f)) <= kFarthest); }
 
 /// Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, by more
 /// than the two can part within half the diagonal of a face when they are one bent surface.
-bool behind_side(const shared::Side& side, glm::vec3 normal, int axis, float depth) {
+bool behind_side(const shared::Side& side, const glm::vec3& normal, int axis, float depth) {
   const float behind = (side.depth - depth) * side.normal[axis];
   if (!(behind > kOneLayer)) return false;
   const float cosine = glm::clamp(glm::dot(side.normal, normal), 0.1f, 1.0f);
@@ -44,7 +45,7 @@ SideColumns::SideColumns(const VoxelGrid& voxels) {
   const glm::ivec3 cells = voxels.grid().cells;
   for (int axis = 0; axis < 3; ++axis) {
     const int stride = voxels.blocks()[axis] + 2 * kPad;
-    layout_[size_t(axis)] = {stride, cells[shared::axis_b(axis)], cells[shared::axis_c(axis)]};
+    layout_[size_t(axis)] = {stride, cells[shared::axis_b(axis)] + 2 * kPad, cells[shared::axis_c(axis)] + 2 * kPad};
   }
   std::vector<const VoxelGrid::Leaf*> leaves;
   voxels.cell_sides_tree().getNodes(leaves);
@@ -94,100 +95,112 @@ void SideColumns::spread(int kind) {
 SideSearch::SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both)
     : voxels_(voxels), columns_(columns), normals_{normal, -normal}, fronts_{front, 1 - front}, ways_(both ? 2 : 1) {
   for (int axis = 0; axis < 3; ++axis) {
-    Axis& a = axes_[axis];
-    a.slope_b = normal[shared::axis_b(axis)] / normal[axis];
-    a.slope_c = normal[shared::axis_c(axis)] / normal[axis];
-    a.slope = std::abs(a.slope_b) + std::abs(a.slope_c);
-    // Where the normal runs up the axis, the cells above the surface see it; they have it at their lower face.
-    const bool up = normal[axis] > 0.0f;
-    a.faces[0] = shared::face_of(axis, !up);
-    a.faces[1] = shared::face_of(axis, up);
-    a.below[0] = up ? 0 : 1;
-    a.below[1] = up ? 1 : 0;
-    for (int way = 0; columns != nullptr && way < ways_; ++way) {
-      a.columns[way] = columns->of_face(a.faces[way], fronts_[way]);
-    }
+    if (!(std::abs(normal[axis]) >= kLeastShare)) continue;
+    prepare(axis, columns);
+    weights_[axis] = std::abs(normal[axis]);
+  }
+  weights_ /= std::max(weights_.x + weights_.y + weights_.z, 1e-30f);
+}
+
+void SideSearch::prepare(int axis, const SideColumns* columns) {
+  axes_asked_ |= 1 << axis;
+  const glm::vec3 normal = normals_[0];
+  Axis& a = axes_[axis];
+  a.slope_b = normal[shared::axis_b(axis)] / normal[axis];
+  a.slope_c = normal[shared::axis_c(axis)] / normal[axis];
+  a.slope = std::abs(a.slope_b) + std::abs(a.slope_c);
+  // Where the normal runs up the axis, the cells above the surface see it; they have it at their lower face.
+  const bool up = normal[axis] > 0.0f;
+  a.faces[0] = shared::face_of(axis, !up);
+  a.faces[1] = shared::face_of(axis, up);
+  a.below[0] = up ? 0 : 1;
+  a.below[1] = up ? 1 : 0;
+  for (int way = 0; columns != nullptr && way < 2; ++way) {
+    a.columns[way] = columns->of_face(a.faces[way], fronts_[way]);
   }
 }
 
-/// Bits of the cells `first` ... `first` + 2 of a column that have a side on the face.
-std::uint32_t SideSearch::cells_with_side(int face, int b, int c, int first) const {
-  const int axis = shared::face_axis(face);
+/// Bits of the cells beside and below, at and above the face of the plane that have a side asked for (with columns), or
+/// any side on that face (without).
+template <int axis>
+inline std::uint32_t SideSearch::cells_with_side(const Column& column, int way) const {
+  const Axis& a = axes_[axis];
+  const int first = column.face - a.below[way] - 1;
+  if (columns_ != nullptr) {
+    const SideColumns::Columns& of_way = a.columns[way];
+    return of_way.column(of_way.offset(column.b, column.c), first) & 7u;
+  }
   glm::ivec3 cell;
-  cell[shared::axis_b(axis)] = b;
-  cell[shared::axis_c(axis)] = c;
+  cell[(axis + 1) % 3] = column.b;
+  cell[(axis + 2) % 3] = column.c;
   std::uint32_t bits = 0;
   for (int k = 0; k < 3; ++k) {
     cell[axis] = first + k;
     if (cell[axis] < 0 || cell[axis] >= voxels_.grid().cells[axis]) continue;
-    bits |= std::uint32_t(shared::has_side(voxels_.cell_sides(cell), face)) << k;
+    bits |= std::uint32_t(shared::has_side(voxels_.cell_sides(cell), a.faces[way])) << k;
   }
   return bits;
 }
 
-/// Looks at the sides of a column: at the face of the plane first, then at those beside it. True when one is alike.
+/// Index of the side of a column's cell, which must have it.
 template <int axis>
-inline bool SideSearch::look(const Column& column, int way, Found& found) const {
-  const Axis& a = axes_[axis];
-  const int face = a.faces[way];
-  const int middle = column.face - a.below[way];
-  const std::uint32_t three = columns_ != nullptr ? a.columns[way].column(column.b, column.c, middle - 1) & 7u
-                                                  : cells_with_side(face, column.b, column.c, middle - 1);
+inline std::uint32_t SideSearch::side_of(const Column& column, int cell, int way) const {
+  glm::ivec3 at;
+  at[(axis + 1) % 3] = column.b;
+  at[(axis + 2) % 3] = column.c;
+  at[axis] = cell;
+  const glm::uvec2 own = voxels_.cell_sides(at);
+  return own.x + kBitCount[own.y & ((1u << axes_[axis].faces[way]) - 1u)];
+}
+
+/// Looks at the sides of a column, `three` as cells_with_side has it: at the face of the plane first, then at those
+/// beside it. True when one is alike.
+template <int axis>
+inline bool SideSearch::look(const Column& column, std::uint32_t three, const Place& place, int way,
+                             Found& found) const {
+  const int middle = column.face - axes_[axis].below[way];
   if (three == 0) return false;
-  glm::ivec3 cell;
-  cell[(axis + 1) % 3] = column.b;
-  cell[(axis + 2) % 3] = column.c;
+  const int front = fronts_[way];
+  const glm::vec3& normal = normals_[way];
+  // To the point, and to all points of the cell.
+  const bool near = std::abs(column.depth - place.at) <= kFarthest;
+  const bool all_near = std::max(column.depth - place.low, place.low + 1.0f - column.depth) < kFarthest;
   for (int step : {0, 1, -1}) {
     if ((three >> (step + 1) & 1u) == 0) continue;
-    cell[axis] = middle + step;
-    const glm::uvec2 own = voxels_.cell_sides(cell);
-    const std::uint32_t index = own.x + kBitCount[own.y & ((1u << face) - 1u)];
+    const std::uint32_t index = side_of<axis>(column, middle + step, way);
     const shared::Side& side = voxels_.sides()[index];
-    const int front = fronts_[way];
-    const glm::vec3 normal = normals_[way];
     if (front >= 0 && (side.front != front || behind_side(side, normal, axis, column.depth))) continue;
     const float cosine = glm::dot(side.normal, normal);
     if (!(cosine >= 0.0f)) continue;
     if (found.facing < 0) {
-      found.facing_varies |= !column.all_near;
-      if (column.near) found.facing = int(index);
+      found.facing_varies |= !all_near;
+      if (near) found.facing = int(index);
     }
     if (!(cosine >= kLikeNormals)) continue;
-    found.alike_varies |= !column.all_near;
-    if (!column.near) continue;
+    found.alike_varies |= !all_near;
+    if (!near) continue;
     found.alike = int(index);
     return true;
   }
   return false;
 }
 
-/// Ways for which one of the nine columns around has a side that the plane might ask for.
-int SideSearch::anybody_around(int axis, const Column& own) const {
+/// Whether one of the nine columns around has a side that the plane might ask for.
+template <int axis>
+inline bool SideSearch::anybody_around(const Column& own, int way) const {
+  if (columns_ == nullptr) return true;
   const Axis& a = axes_[axis];
-  if (columns_ == nullptr) return 3;
   const float slope = a.slope > 0.0f ? a.slope + 1e-3f : 0.0f;  // rounding
-  const int first = face_of_depth(own.depth - slope) - 1, last = face_of_depth(own.depth + slope) + 1;
-  const std::uint32_t mask = (1u << (last - first + 1)) - 1;
-  int ways = 0;
-  for (int way = 0; way < ways_; ++way) {
-    const std::uint32_t bits = a.columns[way].around(own.b, own.c, first - a.below[way]);
-    if ((bits & mask) != 0) ways |= 1 << way;
-  }
-  return ways;
+  const int first = face_of_depth_quick(own.depth - slope) - 1, last = face_of_depth_quick(own.depth + slope) + 1;
+  const SideColumns::Columns& columns = a.columns[way];
+  return (columns.around(columns.offset(own.b, own.c), first - a.below[way]) & ((1u << (last - first + 1)) - 1)) != 0;
 }
 
 /// The quick way to what most searches end with: the plane's own face has the side asked for.
 template <int axis>
 inline int SideSearch::side_at_once(const Column& column, int way) const {
-  const Axis& a = axes_[axis];
-  glm::ivec3 cell;
-  cell[(axis + 1) % 3] = column.b;
-  cell[(axis + 2) % 3] = column.c;
-  cell[axis] = column.face - a.below[way];
-  if (cell[axis] < 0 || cell[axis] >= voxels_.grid().cells[axis]) return -1;
-  const glm::uvec2 own = voxels_.cell_sides(cell);
-  if (!shared::has_side(own, a.faces[way])) return -1;
-  const std::uint32_t index = own.x + kBitCount[own.y & ((1u << a.faces[way]) - 1u)];
+  if ((cells_with_side<axis>(column, way) & 2u) == 0) return -1;
+  const std::uint32_t index = side_of<axis>(column, column.face - axes_[axis].below[way], way);
   const shared::Side& side = voxels_.sides()[index];
   const bool good = (side.front == fronts_[way] || fronts_[way] < 0) &&
                     (fronts_[way] < 0 || (side.depth - column.depth) * side.normal[axis] <= kOneLayer) &&
@@ -196,68 +209,140 @@ inline int SideSearch::side_at_once(const Column& column, int way) const {
 }
 
 template <int axis>
-void SideSearch::find(glm::vec3 point, glm::ivec3 own, Found* found) const {
-  constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
-  const glm::ivec3 cells = voxels_.grid().cells;
+inline SideSearch::Column SideSearch::column_at(const glm::vec3& point, int b, int c) const {
   const Axis& a = axes_[axis];
-  const auto column_at = [&](int at_b, int at_c) {
-    Column column{at_b, at_c, 0, 0.0f, true, true};
-    column.depth =
-        point[axis] + (a.slope_b * (point[b] - float(at_b) - 0.5f) + a.slope_c * (point[c] - float(at_c) - 0.5f));
-    column.face = face_of_depth(column.depth);
-    return column;
-  };
-  const auto exists = [&](int at_b, int at_c) { return at_b >= 0 && at_b < cells[b] && at_c >= 0 && at_c < cells[c]; };
+  const float depth = point[axis] + (a.slope_b * (point[(axis + 1) % 3] - float(b) - 0.5f) +
+                                     a.slope_c * (point[(axis + 2) % 3] - float(c) - 0.5f));
+  return {b, c, face_of_depth_quick(depth), depth};
+}
+
+template <int axis>
+inline void SideSearch::find(const glm::vec3& point, const glm::ivec3& own, Found* found) const {
+  constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  const glm::ivec3& cells = voxels_.grid().cells;
   int searching = ways_ == 2 ? 3 : 1;
-  if (a.slope <= kFarthest && exists(own[b], own[c])) {  // all points of the cell are within half a slope
-    const Column column = column_at(own[b], own[c]);
+  const bool exists = own[b] >= 0 && own[b] < cells[b] && own[c] >= 0 && own[c] < cells[c];
+  if (axes_[axis].slope <= kFarthest && exists) {  // all points of the cell are within half a slope
+    const Column column = column_at<axis>(point, own[b], own[c]);
     for (int way = 0; way < ways_; ++way) {
       found[way].alike = side_at_once<axis>(column, way);
-      if (found[way].alike >= 0) searching &= ~(1 << way);
+      if (found[way].alike >= 0 || !anybody_around<axis>(column, way)) searching &= ~(1 << way);
     }
-    if (searching != 0) searching &= anybody_around(axis, column);
-    if (searching == 0) return;
   }
-  const float low = float(own[axis]), high = low + 1.0f;  // where other points of the cell may be
-  // The nearest columns, first its own.
-  constexpr int kRing[9][2] = {{0, 0}, {-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}};
-  for (const auto& ring : kRing) {
-    if (!exists(own[b] + ring[0], own[c] + ring[1])) continue;
-    Column column = column_at(own[b] + ring[0], own[c] + ring[1]);
-    if (std::max(low - column.depth, column.depth - high) > kFarthest) continue;
-    column.near = std::abs(column.depth - point[axis]) <= kFarthest;
-    column.all_near = std::max(column.depth - low, high - column.depth) < kFarthest;
-    if ((searching & 1) != 0 && look<axis>(column, 0, found[0])) searching &= ~1;
-    if ((searching & 2) != 0 && look<axis>(column, 1, found[1])) searching &= ~2;
+  if (searching == 0) return;
+  if (columns_ != nullptr) {
+    find_around_quick<axis>(point, own, searching, found);
+  } else {
+    find_around<axis>(point, own, searching, found);
+  }
+}
+
+/// The nine nearest columns, first the own one, then row by row.
+template <int axis>
+void SideSearch::find_around(const glm::vec3& point, const glm::ivec3& own, int searching, Found* found) const {
+  constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  constexpr int kOrder[9] = {4, 0, 1, 2, 3, 5, 6, 7, 8};
+  const glm::ivec3& cells = voxels_.grid().cells;
+  const Place place{point[axis], float(own[axis])};
+  for (int k : kOrder) {
+    const int at_b = own[b] + k % 3 - 1, at_c = own[c] + k / 3 - 1;
+    if (at_b < 0 || at_b >= cells[b] || at_c < 0 || at_c >= cells[c]) continue;
+    const Column column = column_at<axis>(point, at_b, at_c);
+    if (farther(place.low, column.depth)) continue;
+    for (int way = 0; way < ways_; ++way) {
+      if ((searching >> way & 1) == 0) continue;
+      if (look<axis>(column, cells_with_side<axis>(column, way), place, way, found[way])) searching &= ~(1 << way);
+    }
     if (searching == 0) return;
   }
 }
 
-SidesOfPoint SideSearch::weighted(const Found (&by_axis)[3][2], int way, bool& place_matters) const {
-  bool any_alike = false, alike_varies = false, facing_varies = false;
-  for (const auto& of_axis : by_axis) {
-    const Found& f = of_axis[way];
-    any_alike |= f.alike >= 0;
+/// The same by columns of bits.
+template <int axis>
+void SideSearch::find_around_quick(const glm::vec3& point, const glm::ivec3& own, int searching, Found* found) const {
+  constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
+  static const ColumnsAround around = columns_around();
+  const Axis& a = axes_[axis];
+  const Place place{point[axis], float(own[axis])};
+  const int offset = a.columns[0].offset(own[b], own[c]);
+  const AroundQuery query{point[axis],
+                          point[b],
+                          point[c],
+                          place.low,
+                          float(own[b]),
+                          float(own[c]),
+                          a.slope_b,
+                          a.slope_c,
+                          kFarthest,
+                          a.columns[0].stride_b,
+                          a.columns[0].stride_c,
+                          {a.columns[0].column_bytes + offset, a.columns[1].column_bytes + offset},
+                          {a.below[0] + 1, a.below[1] + 1}};
+  AroundColumns columns;
+  const std::uint32_t with_sides = around(query, columns);
+  const Column middle = column_at<axis>(point, own[b], own[c]);
+  const bool middle_counts = !farther(place.low, middle.depth);
+  for (int way = 0; way < ways_; ++way) {
+    if ((searching >> way & 1) == 0) continue;
+    if (middle_counts && look<axis>(middle, cells_with_side<axis>(middle, way), place, way, found[way])) continue;
+    for (std::uint32_t rest = with_sides >> (8 * way) & 255u; rest != 0; rest &= rest - 1) {
+      const int k = std::countr_zero(rest), nine = k < 4 ? k : k + 1;
+      const Column column{own[b] + nine % 3 - 1, own[c] + nine / 3 - 1, columns.face[k], columns.depth[k]};
+      if (look<axis>(column, columns.three[way][k], place, way, found[way])) break;
+    }
+  }
+}
+
+inline SidesOfPoint SideSearch::weighted(const Found (&by_axis)[3][2], int way, bool& place_matters) const {
+  int alike = 0;
+  bool alike_varies = false, facing_varies = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Found& f = by_axis[axis][way];
+    alike |= int(f.alike >= 0) << axis;
     alike_varies |= f.alike_varies;
     facing_varies |= f.facing_varies;
   }
-  place_matters |= alike_varies || (!any_alike && facing_varies);
+  place_matters |= alike_varies || (alike == 0 && facing_varies);
   SidesOfPoint out;
   for (int axis = 0; axis < 3; ++axis) {
-    out.sides[axis] = any_alike ? by_axis[axis][way].alike : by_axis[axis][way].facing;
+    out.sides[axis] = alike != 0 ? by_axis[axis][way].alike : by_axis[axis][way].facing;
+  }
+  if (alike == axes_asked_) {
+    out.weights = weights_;
+    return out;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
     if (out.sides[axis] >= 0) out.weights[axis] = std::abs(normals_[0][axis]);
   }
   out.weights /= std::max(out.weights.x + out.weights.y + out.weights.z, 1e-30f);
   return out;
 }
 
-SideSearch::Answer SideSearch::at(glm::vec3 point, glm::ivec3 cell) const {
+/// Where the plane lies across one axis, as most do.
+template <int axis>
+inline SideSearch::Answer SideSearch::at_one_axis(const glm::vec3& point, const glm::ivec3& cell) const {
+  Found found[2];
+  find<axis>(point, cell, found);
+  Answer out;
+  SidesOfPoint* const sides[2] = {&out.along, &out.against};
+  for (int way = 0; way < ways_; ++way) {
+    const Found& f = found[way];
+    const int side = f.alike >= 0 ? f.alike : f.facing;
+    out.place_matters |= f.alike_varies || (f.alike < 0 && f.facing_varies);
+    sides[way]->sides[axis] = side;
+    if (side >= 0) sides[way]->weights[axis] = 1.0f;
+  }
+  return out;
+}
+
+SideSearch::Answer SideSearch::at(const glm::vec3& point, const glm::ivec3& cell) const {
+  if (axes_asked_ == 1) return at_one_axis<0>(point, cell);
+  if (axes_asked_ == 2) return at_one_axis<1>(point, cell);
+  if (axes_asked_ == 4) return at_one_axis<2>(point, cell);
   Found found[3][2];
-  constexpr float kLeastShare = 1e-3f;
-  const glm::vec3 share = glm::abs(normals_[0]);
-  if (share.x >= kLeastShare) find<0>(point, cell, found[0]);
-  if (share.y >= kLeastShare) find<1>(point, cell, found[1]);
-  if (share.z >= kLeastShare) find<2>(point, cell, found[2]);
+  if ((axes_asked_ & 1) != 0) find<0>(point, cell, found[0]);
+  if ((axes_asked_ & 2) != 0) find<1>(point, cell, found[1]);
+  if ((axes_asked_ & 4) != 0) find<2>(point, cell, found[2]);
   Answer out;
   out.along = weighted(found, 0, out.place_matters);
   if (ways_ == 2) out.against = weighted(found, 1, out.place_matters);

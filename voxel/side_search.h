@@ -26,41 +26,43 @@ class SideColumns {
   explicit SideColumns(const VoxelGrid& voxels);
 
   /// The columns of one face. Bit k of what they answer: the cell `first` + k of the column (b, c) has a side with that
-  /// `front`; 16 bits, `first` from -16 on.
+  /// `front`; 16 bits, `first` from -16 on, columns from two outside the grid on.
   struct Columns {
     const std::uint8_t* column_bytes = nullptr;
     const std::uint8_t* around_bytes = nullptr;
-    int stride_b = 0, stride_c = 0;
+    int stride_b = 0, stride_c = 0;  // bytes between columns
 
-    std::uint32_t column(int b, int c, int first) const { return read(column_bytes, b, c, first); }
+    int offset(int b, int c) const { return stride_b * b + stride_c * c; }
+    std::uint32_t column(int offset, int first) const { return read(column_bytes + offset, first); }
     /// Any of the column and the eight around it.
-    std::uint32_t around(int b, int c, int first) const { return read(around_bytes, b, c, first); }
+    std::uint32_t around(int offset, int first) const { return read(around_bytes + offset, first); }
 
    private:
-    std::uint32_t read(const std::uint8_t* bytes, int b, int c, int first) const {
+    static std::uint32_t read(const std::uint8_t* bytes, int first) {
       std::uint32_t word;
-      std::memcpy(&word, bytes + (stride_b * b + stride_c * c + (first >> 3)), sizeof word);
+      std::memcpy(&word, bytes + (first >> 3), sizeof word);
       return word >> (first & 7);
     }
   };
   Columns of_face(int face, int front) const {
     const Layout& l = layout_[size_t(face >> 1)];
     const size_t kind = size_t(face + 6 * front);
-    return {columns_[kind].data() + kPad, around_[kind].data() + kPad, l.stride, l.stride * l.columns_b};
+    const size_t first = byte(face, 0, 0);
+    return {columns_[kind].data() + first, around_[kind].data() + first, l.stride, l.stride * l.columns_b};
   }
 
  private:
   using Bytes = std::vector<std::uint8_t>;
-  static constexpr int kPad = 2;  // bytes before and after a column
+  static constexpr int kPad = 2;  // bytes before and after a column, and columns around the grid
   struct Layout {
-    int stride, columns_b, columns_c;
+    int stride, columns_b, columns_c;  // all padded
   };
 
   void fill(const VoxelGrid& voxels, const VoxelGrid::Leaf& leaf);
   void spread(int kind);
   size_t byte(int face, int b, int c) const {
     const Layout& l = layout_[size_t(face >> 1)];
-    return size_t(kPad + l.stride * (b + l.columns_b * c));
+    return size_t(kPad + l.stride * (kPad + b + l.columns_b * (kPad + c)));
   }
 
   std::array<Layout, 3> layout_;
@@ -70,7 +72,8 @@ class SideColumns {
 /// The same for many points of one plane, and for one or both of its sides at once.
 class SideSearch {
  public:
-  /// @param columns  of the same voxels: saves time where there are many searches; may be null. Needs front 0 or 1.
+  /// @param columns  of the same voxels: saves time where there are many searches; may be null. Needs front 0 or 1, and
+  ///                 cells not farther outside the grid than one.
   /// @param front    of the sides that `normal` asks for; with `both`, 1 - front is asked for against it.
   SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both);
 
@@ -79,7 +82,7 @@ class SideSearch {
     bool place_matters = false;   // another point of the plane in the same cell may get other ones
   };
   /// @param point  in cell units, and the cell that it lies in.
-  Answer at(glm::vec3 point, glm::ivec3 cell) const;
+  Answer at(const glm::vec3& point, const glm::ivec3& cell) const;
 
  private:
   /// First sides of an axis whose normals are alike (within 45 degrees), and within 90. They vary where points of the
@@ -102,17 +105,33 @@ class SideSearch {
   struct Column {
     int b, c, face;  // the face that the plane blocks there
     float depth;
-    bool near, all_near;  // to the point; to all points of the cell
+  };
+  /// Where the point is on the axis, and the cell that it lies in.
+  struct Place {
+    float at, low;
   };
 
+  void prepare(int axis, const SideColumns* columns);
   template <int axis>
-  void find(glm::vec3 point, glm::ivec3 own, Found* found) const;
+  Answer at_one_axis(const glm::vec3& point, const glm::ivec3& cell) const;
   template <int axis>
-  bool look(const Column& column, int way, Found& found) const;
-  int anybody_around(int axis, const Column& own) const;
-  std::uint32_t cells_with_side(int face, int b, int c, int first) const;
+  void find(const glm::vec3& point, const glm::ivec3& own, Found* found) const;
+  template <int axis>
+  Column column_at(const glm::vec3& point, int b, int c) const;
+  template <int axis>
+  void find_around(const glm::vec3& point, const glm::ivec3& own, int searching, Found* found) const;
+  template <int axis>
+  void find_around_quick(const glm::vec3& point, const glm::ivec3& own, int searching, Found* found) const;
+  template <int axis>
+  bool look(const Column& column, std::uint32_t three, const Place& place, int way, Found& found) const;
+  template <int axis>
+  std::uint32_t cells_with_side(const Column& column, int way) const;
   template <int axis>
   int side_at_once(const Column& column, int way) const;
+  template <int axis>
+  bool anybody_around(const Column& own, int way) const;
+  template <int axis>
+  std::uint32_t side_of(const Column& column, int cell, int way) const;
   SidesOfPoint weighted(const Found (&by_axis)[3][2], int way, bool& place_matters) const;
 
   const VoxelGrid& voxels_;
@@ -120,6 +139,8 @@ class SideSearch {
   glm::vec3 normals_[2];
   int fronts_[2];
   int ways_;
+  int axes_asked_ = 0;       // bits
+  glm::vec3 weights_{0.0f};  // where all of them find a side
   Axis axes_[3];
 };
 

@@ -12,14 +12,27 @@ namespace {
 
 constexpr float kAreaUnit = 1048576.0f;  // of h^2; sums of integers do not depend on the order of threads
 
+// How far from their block records count, in cells: they may be a cell outside, and a search reaches three to the
+// plane, one to the cell at its face and one beside.
+constexpr int kReach = 1 + 3 + 1 + 1;
+static_assert(2 * kReach <= 2 * kLeafCells);  // two blocks apart
+
+/// Numbers of bits; baseline x86-64 has no instruction for it.
+constexpr auto kSubCount = [] {
+  std::array<std::uint8_t, 1 << kStoppedShift> count{};
+  for (size_t i = 1; i < count.size(); ++i) count[i] = std::uint8_t(count[i / 2] + i % 2);
+  return count;
+}();
+
+/// Where fine columns are, cell units: node_position(k) / SLICE_STEPS.
+inline float fine_position(int k) { return float(2 * k + 1) / float(2 * kFine); }
+
 /// Point of the triangle at a fine column, cell units.
-glm::vec3 point_at(int axis, glm::ivec3 cell, int sub, float depth) {
+inline void set_point(glm::vec3& point, int axis, const glm::ivec3& cell, int sub, float depth) {
   const int b = shared::axis_b(axis), c = shared::axis_c(axis);
-  glm::vec3 point;
-  point[b] = float(double(node_position(kFine * cell[b] + sub % kFine)) / SLICE_STEPS);
-  point[c] = float(double(node_position(kFine * cell[c] + sub / kFine)) / SLICE_STEPS);
+  point[b] = fine_position(kFine * cell[b] + sub % kFine);
+  point[c] = fine_position(kFine * cell[c] + sub / kFine);
   point[axis] = depth;
-  return point;
 }
 
 class AreaCounter {
@@ -27,31 +40,34 @@ class AreaCounter {
   AreaCounter(const SlicedScene& s, const VoxelGrid& voxels)
       : s_(s), voxels_(voxels), columns_(voxels), fixed_(voxels.side_count()) {}
 
+  /// Never at the same time for blocks that may count for the same sides: between the others are two blocks.
   void add(const std::vector<AreaRecord>& records) {
     for (size_t first = 0, last = 0; first < records.size(); first = last) {
-      const SideSearch search(voxels_, &columns_, s_.triangles[records[first].triangle].normal, 1, true);
+      const SliceTriangle& t = s_.triangles[records[first].triangle];
+      const SideSearch search(voxels_, &columns_, t.normal, 1, true);
       for (; last < records.size() && records[last].triangle == records[first].triangle; ++last) {
-        add(records[last], search);
+        add(records[last], t, search);
       }
     }
   }
 
   float area_m2(size_t side) const {
     const float h = s_.grid.cell_size_m;
-    return float(fixed_[side].load(std::memory_order_relaxed)) / kAreaUnit * h * h;
+    return float(fixed_[side]) / kAreaUnit * h * h;
   }
 
  private:
   /// `search` is of the record's triangle.
-  void add(const AreaRecord& record, const SideSearch& search) {
-    const SliceTriangle& t = s_.triangles[record.triangle];
+  void add(const AreaRecord& record, const SliceTriangle& t, const SideSearch& search) {
     const int axis = t.nearest_axis;
     const std::uint32_t subs = record.amount & ((1u << kStoppedShift) - 1);
-    const int count = std::popcount(subs);
+    const int count = kSubCount[subs];
     const float stopped = float(record.amount >> kStoppedShift) / (kStoppedUnit * float(count));
     const float area = stopped / (float(kFine * kFine) * std::abs(t.normal[axis]));
     const glm::ivec3 cell = unpack_cell(record.cell);
-    const SideSearch::Answer found = search.at(point_at(axis, cell, std::countr_zero(subs), record.depth), cell);
+    glm::vec3 point;
+    set_point(point, axis, cell, std::countr_zero(subs), record.depth);
+    const SideSearch::Answer found = search.at(point, cell);
     if (!found.place_matters || count == 1) {
       give(found.along, area, count);
       give(found.against, area, count);
@@ -63,32 +79,55 @@ class AreaCounter {
       const int sub = std::countr_zero(rest);
       const double depth = plane_depth(t, n, axis, node_position(kFine * cell[b] + sub % kFine),
                                        node_position(kFine * cell[c] + sub / kFine));
-      const SideSearch::Answer of_sub = search.at(point_at(axis, cell, sub, float(depth)), cell);
+      set_point(point, axis, cell, sub, float(depth));
+      const SideSearch::Answer of_sub = search.at(point, cell);
       give(of_sub.along, area, 1);
       give(of_sub.against, area, 1);
     }
   }
 
-  void give(const SidesOfPoint& to, float area, int count) {
+  inline void give(const SidesOfPoint& to, float area, int count) {
     for (int axis = 0; axis < 3; ++axis) {
       if (!(to.weights[axis] > 0.0f)) continue;
-      const auto units = std::uint32_t(to.weights[axis] * area * kAreaUnit + 0.5f) * std::uint32_t(count);
-      fixed_[size_t(to.sides[axis])].fetch_add(units, std::memory_order_relaxed);
+      fixed_[size_t(to.sides[axis])] +=
+          std::uint32_t(to.weights[axis] * area * kAreaUnit + 0.5f) * std::uint32_t(count);
     }
   }
 
   const SlicedScene& s_;
   const VoxelGrid& voxels_;
   SideColumns columns_;
-  std::vector<std::atomic<std::uint32_t>> fixed_;
+  std::vector<std::uint32_t> fixed_;
 };
+
+/// Calls visit(block) for all occupied blocks: rows of them along x in parallel, at any time only rows that have two
+/// others between them.
+template <class Visit>
+void for_each_block_apart(const SlicedScene& s, const Visit& visit) {
+  struct Row {
+    size_t first, last;  // of `occupied`, which is in the order of rows
+  };
+  std::array<std::vector<Row>, 9> phases;
+  const auto row_of = [&](size_t i) { return int(s.occupied[i]) / s.blocks.x; };
+  for (size_t first = 0, last = 0; first < s.occupied.size(); first = last) {
+    const int row = row_of(first);
+    while (last < s.occupied.size() && row_of(last) == row) ++last;
+    const int y = row % s.blocks.y, z = row / s.blocks.y;
+    phases[size_t(y % 3 + 3 * (z % 3))].push_back({first, last});
+  }
+  for (const std::vector<Row>& rows : phases) {
+    tbb::parallel_for(size_t(0), rows.size(), [&](size_t r) {
+      for (size_t i = rows[r].first; i < rows[r].last; ++i) visit(s.occupied[i]);
+    });
+  }
+}
 
 }  // namespace
 
 void count_areas(const SlicedScene& s, const BlockTable& table, VoxelGrid& voxels) {
   AreaCounter counter(s, voxels);
-  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
-    const BlockFaces* block = table[s.occupied[i]].get();
+  for_each_block_apart(s, [&](std::uint32_t at) {
+    const BlockFaces* block = table[at].get();
     if (block != nullptr) counter.add(block->areas);
   });
   auto& sides = voxels.mutable_sides();

@@ -67,6 +67,7 @@ void BlockCells::slice(const SliceTriangle& t) {
                 kFine * (last_cell[axis] + 1) + rim};
   if (!cut(window, fine_box(t), axis)) return;
   const double area_of_one = kUnit / (kFine * kFine * std::abs(double(t.normal[axis])));
+  const TriangleMaterial material(s_, t, n, axis, kLineFootprint);
   const TriangleSlice<axis> triangle(t, n);
   triangle.fragments(window, [&](int column_b, int column_c, int, std::int64_t numerator) {
     glm::ivec3 cell;
@@ -74,7 +75,7 @@ void BlockCells::slice(const SliceTriangle& t) {
     cell[c] = column_c / kFine;
     cell[axis] = std::clamp(int(std::floor(float(triangle.depth(numerator)))), 0, s_.grid.cells[axis] - 1);
     if (cell[axis] < first_cell_[axis] || cell[axis] > last_cell[axis]) return;
-    const SlicedMaterial m = material_at(s_, t, n, axis, column_b, column_c, kLineFootprint);
+    const SlicedMaterial m = material.at(column_b, column_c);
     if (!(m.stopped > 0.0f)) return;
     Cell& to = cells_[size_t(leaf_offset(cell))];
     const double area = area_of_one * double(m.stopped);

@@ -111,6 +111,8 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
   const int first_segment = kFine * first_cell_[axis];
   const bool counts_area = axis == t.nearest_axis && t.normal != glm::vec3(0.0f);
   MarkedFace* const faces = scratch_.faces[size_t(axis)].data();
+  std::optional<TriangleMaterial> material;
+  if constexpr (may_pass) material.emplace(s_, t, n, axis, kLineFootprint);
   const TriangleSlice<axis> triangle(t, n);
   triangle.fragments(window, [&](int column_b, int column_c, int k, std::int64_t numerator) {
     const size_t at_b = size_t(column_b - fine_b), at_c = size_t(column_c - fine_c);
@@ -119,7 +121,7 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
     const bool centre = sub == 4;
     float stopped = 1.0f;
     if constexpr (may_pass) {
-      stopped = material_at(s_, t, n, axis, column_b, column_c, kLineFootprint).stopped;
+      stopped = material->at(column_b, column_c).stopped;
       if (!(stopped > 0.0f)) return;
     }
     const int cell_b = kTable.cell[at_b], cell_c = kTable.cell[at_c], local = kTable.cell[at_segment];

@@ -67,6 +67,7 @@ inline FineBox fine_box(const SliceTriangle& t) {
 /// layer of blocks more than cells need where the cells fill their last block.
 struct SlicedScene {
   const Scene* scene = nullptr;
+  const Mipmaps* mipmaps = nullptr;
   Grid grid{};
   glm::ivec3 blocks{0};
   std::vector<SliceTriangle> triangles;
@@ -74,7 +75,6 @@ struct SlicedScene {
   std::vector<std::uint32_t> binned;    // triangles
   std::vector<std::uint32_t> occupied;  // blocks with triangles, ascending
 
-  std::shared_ptr<const Mipmaps> mipmaps;
   std::vector<std::optional<SlicedMaterial>> constant;  // by mesh: where no texture or vertex colour varies it
 
   const Mesh& mesh(const SliceTriangle& t) const { return scene->meshes[t.mesh]; }
@@ -84,15 +84,34 @@ struct SlicedScene {
     return kLeafCells * glm::ivec3(b - row * blocks.x, row % blocks.y, row / blocks.y);
   }
 };
-SlicedScene slice_scene(const Scene& scene, const Grid& grid);
+/// The scene and its mipmaps must outlive what is returned.
+SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 
 // Edge in cells of the square that a texel should stand for: alpha belongs to a fine line, albedo to a face.
 constexpr float kLineFootprint = 1.0f / kFine;
 constexpr float kFaceFootprint = 1.0f;
 
-/// At a fine column of the pass along `axis`. @param footprint  cells, on an edge.
-SlicedMaterial material_at(const SlicedScene& s, const SliceTriangle& t, const Long3& n, int axis, int fine_b,
-                           int fine_c, float footprint);
+/// By mesh: where no texture or vertex colour varies it.
+std::vector<std::optional<SlicedMaterial>> constant_materials(const Scene& scene);
+
+/// What a triangle is made of at the fine columns of the pass along `axis`.
+class TriangleMaterial {
+ public:
+  /// @param n  plane_normal(t); @param footprint  cells, on an edge. All must outlive this.
+  TriangleMaterial(const SlicedScene& s, const SliceTriangle& t, const Long3& n, int axis, float footprint);
+  SlicedMaterial at(int fine_b, int fine_c) const;
+
+ private:
+  glm::vec4 texel(const TextureUse& use, const glm::vec3& weights, float lod, bool srgb) const;
+
+  const SlicedScene& s_;
+  const SliceTriangle& t_;
+  const Long3& n_;
+  int axis_;
+  const SlicedMaterial* constant_ = nullptr;
+  glm::uvec3 corners_{0};
+  float base_lod_ = 0.0f, metallic_lod_ = 0.0f, emissive_lod_ = 0.0f;
+};
 
 /// Depth of the triangle's plane along `axis` in cell units, where the column's coordinates are `position` (in steps).
 inline double plane_depth(const SliceTriangle& t, const Long3& n, int axis, std::int64_t position_b,

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/surface.h"
 #include "voxel/slice_internal.h"
 
 namespace volgi::slicing {
@@ -147,114 +146,21 @@ void bin_triangles(SlicedScene& s) {
   });
 }
 
-/// A triangle's material, textures at the level in which a square of `footprint` cells has one texel in the mean: one
-/// level for the whole triangle, so that passes along different axes agree.
-class VaryingMaterial {
- public:
-  VaryingMaterial(const SlicedScene& s, const Mesh& mesh, std::uint32_t triangle, double area_cells, float footprint)
-      : s_(s), mesh_(mesh), corners_(mesh.triangles[triangle]), area_cells_(area_cells), footprint_(footprint) {}
-
-  SlicedMaterial at(glm::vec3 weights) const {
-    const Material& m = s_.scene->materials[size_t(mesh_.material)];
-    glm::vec4 base = m.base_color_factor * sampled(m.base_color, weights, true);
-    if (!mesh_.colors.empty()) {
-      base *= weights.x * mesh_.colors[corners_.x] + weights.y * mesh_.colors[corners_.y] +
-              weights.z * mesh_.colors[corners_.z];
-    }
-    const float metallic = m.metallic_factor * sampled(m.metallic, weights, false).z;
-    SlicedMaterial out{glm::clamp(glm::vec3(base) * (1.0f - metallic), 0.0f, 1.0f), glm::vec3(0.0f), 1.0f};
-    if (m.is_emissive()) out.emission = m.emissive_radiance * glm::vec3(sampled(m.emissive, weights, true));
-    if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a >= m.alpha_cutoff ? 1.0f : 0.0f;
-    if (m.alpha_mode == AlphaMode::blend) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);
-    return out;
-  }
-
- private:
-  glm::vec4 sampled(const TextureUse& use, glm::vec3 weights, bool srgb) const {
-    if (use.texture < 0) return glm::vec4(1.0f);
-    const auto& uv = mesh_.uv[size_t(use.texcoord)];
-    if (uv.empty()) return s_.mipmaps->sample(use.texture, glm::vec2(use.uv_from_texcoord[2]), 0.0f, srgb);
-    const glm::vec2 a = uv[corners_.x], b = uv[corners_.y], c = uv[corners_.z];
-    const glm::vec2 at = weights.x * a + weights.y * b + weights.z * c;
-    return s_.mipmaps->sample(use.texture, glm::vec2(use.uv_from_texcoord * glm::vec3(at, 1.0f)),
-                              lod(use, b - a, c - a), srgb);
-  }
-
-  float lod(const TextureUse& use, glm::vec2 u, glm::vec2 v) const {
-    const TextureImage& image = s_.scene->images[size_t(s_.scene->textures[size_t(use.texture)].image)];
-    const double turned = double(glm::determinant(glm::mat2(use.uv_from_texcoord)));
-    const double texels = std::abs(double(u.x * v.y - u.y * v.x) * turned) * image.width * image.height;
-    return float(0.5 *
-                 std::log2(std::max(texels * double(footprint_ * footprint_) / std::max(area_cells_, 1e-20), 1.0)));
-  }
-
-  const SlicedScene& s_;
-  const Mesh& mesh_;
-  glm::uvec3 corners_;
-  double area_cells_;  // twice the triangle's area
-  float footprint_;
-};
-
-std::shared_ptr<const Mipmaps> make_mipmaps(const Scene& scene) {
-  auto mipmaps = std::make_shared<Mipmaps>(scene);
-  for (const Material& m : scene.materials) {
-    if (m.base_color.texture >= 0) mipmaps->prepare(m.base_color.texture, true);
-    if (m.metallic.texture >= 0) mipmaps->prepare(m.metallic.texture, false);
-    if (m.is_emissive() && m.emissive.texture >= 0) mipmaps->prepare(m.emissive.texture, true);
-  }
-  return mipmaps;
-}
-
-/// Barycentric weights of a fine column.
-glm::vec3 weights_at(const SliceTriangle& t, const Long3& n, int axis, int fine_b, int fine_c) {
-  const int b = shared::axis_b(axis), c = shared::axis_c(axis);
-  const std::int64_t at_b = node_position(fine_b), at_c = node_position(fine_c);
-  glm::vec3 weights;
-  for (int k = 0; k < 3; ++k) {
-    const glm::i64vec3 p(t.vertex[size_t(k + 1) % 3]), q(t.vertex[size_t(k + 2) % 3]);
-    const std::int64_t area = (q[b] - p[b]) * (at_c - p[c]) - (q[c] - p[c]) * (at_b - p[b]);
-    weights[k] = float(double(area) / double(n[size_t(axis)]));
-  }
-  return weights;
-}
-
-std::vector<std::optional<SlicedMaterial>> constant_materials(const SlicedScene& s) {
-  std::vector<std::optional<SlicedMaterial>> out(s.scene->meshes.size());
-  for (size_t i = 0; i < out.size(); ++i) {
-    const Mesh& mesh = s.scene->meshes[i];
-    const Material& m = s.scene->materials[size_t(mesh.material)];
-    const bool textured =
-        m.base_color.texture >= 0 || m.metallic.texture >= 0 || (m.is_emissive() && m.emissive.texture >= 0);
-    if (textured || !mesh.colors.empty() || mesh.triangles.empty()) continue;
-    out[i] = VaryingMaterial(s, mesh, 0, 1.0, kFaceFootprint).at(glm::vec3(1.0f, 0.0f, 0.0f));
-  }
-  return out;
-}
-
 }  // namespace
 
-SlicedScene slice_scene(const Scene& scene, const Grid& grid) {
+SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
   SlicedScene s;
   s.scene = &scene;
+  s.mipmaps = &mipmaps;
   s.grid = grid;
   s.blocks = grid.cells / kLeafCells + 1;
   std::uint32_t count = 0;
   const std::vector<MeshRange> ranges = number_triangles(scene, count);
   s.triangles.resize(count);
   if (count > 0) place_triangles(s, ranges);
-  s.mipmaps = make_mipmaps(scene);
-  s.constant = constant_materials(s);
+  s.constant = constant_materials(scene);
   bin_triangles(s);
   return s;
-}
-
-SlicedMaterial material_at(const SlicedScene& s, const SliceTriangle& t, const Long3& n, int axis, int fine_b,
-                           int fine_c, float footprint) {
-  const auto& constant = s.constant[t.mesh];
-  if (constant) return *constant;
-  const double steps = double(SLICE_STEPS) * double(SLICE_STEPS);
-  const double area = glm::length(glm::dvec3(double(n[0]), double(n[1]), double(n[2]))) / steps;
-  return VaryingMaterial(s, s.mesh(t), t.triangle, area, footprint).at(weights_at(t, n, axis, fine_b, fine_c));
 }
 
 }  // namespace volgi::slicing

@@ -1,7 +1,9 @@
 #include <tbb/parallel_for.h>
-#include <algorithm>
+#include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
 
 #include "voxel/slice_internal.h"
 
@@ -68,6 +70,14 @@ CellFaces cell_faces(const SlicedScene& s, const BlockTable& table, glm::ivec3 b
   return out;
 }
 
+std::uint32_t side_count(const CellFaces& faces) {
+  std::uint32_t count = 0;
+  for (const BlockMask& mask : faces.sided) {
+    for (std::uint64_t word : mask) count += std::uint32_t(std::popcount(word));
+  }
+  return count;
+}
+
 /// Fills the leaf's cells; sides are counted from `first`.
 void fill_leaf(const CellFaces& faces, std::uint32_t first, VoxelGrid::Leaf& leaf) {
   std::int64_t* const cells = leaf.buffer().data();
@@ -123,8 +133,8 @@ class SideWriter {
     if (!(t.normal[axis] * float(n[size_t(axis)]) > 0.0f)) {
       out.normal = glm::vec3(glm::normalize(glm::dvec3(double(n[0]), double(n[1]), double(n[2]))));
     }
-    const SlicedMaterial material = material_at(s_, t, n, axis, kFine * face_cell[b] + sub % kFine,
-                                                kFine * face_cell[c] + sub / kFine, kFaceFootprint);
+    const SlicedMaterial material = TriangleMaterial(s_, t, n, axis, kFaceFootprint)
+                                        .at(kFine * face_cell[b] + sub % kFine, kFine * face_cell[c] + sub / kFine);
     out.albedo = material.albedo;
     out.emission = material.emission;
     out.double_sided = s_.material(t).double_sided;
@@ -166,29 +176,21 @@ VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table) {
     const int row = int(i) / blocks.x;
     return glm::ivec3(int(i) - row * blocks.x, row % blocks.y, row / blocks.y);
   };
-  std::vector<CellFaces> faces;
-  std::vector<std::uint32_t> first, block_of;
-  std::uint32_t sum = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const CellFaces f = cell_faces(s, table, block_at(i));
-    std::uint32_t sides = 0;
-    for (const BlockMask& mask : f.sided) {
-      for (std::uint64_t word : mask) sides += std::uint32_t(std::popcount(word));
-    }
-    if (sides == 0) continue;
-    faces.push_back(f);
-    first.push_back(sum);
-    block_of.push_back(std::uint32_t(i));
-    sum += sides;
-  }
+  std::vector<std::uint32_t> first(count + 1, 0);  // side of each block
+  tbb::parallel_for(size_t(0), count, [&](size_t i) { first[i + 1] = side_count(cell_faces(s, table, block_at(i))); });
+  std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<VoxelGrid::Leaf*> leaves(count, nullptr);
-  tbb::parallel_for(size_t(0), faces.size(), [&](size_t i) {
-    const glm::ivec3 cell = kLeafCells * block_at(block_of[i]);
-    auto* leaf = new VoxelGrid::Leaf(openvdb::Coord(cell.x, cell.y, cell.z), 0);
-    fill_leaf(faces[i], first[i], *leaf);
-    leaves[block_of[i]] = leaf;
-  });
-  VoxelGrid voxels(s.grid, std::vector<shared::Side>(sum), leaves);
+  const auto make_leaves = [&] {
+    tbb::parallel_for(size_t(0), count, [&](size_t i) {
+      if (first[i] == first[i + 1]) return;
+      const glm::ivec3 cell = kLeafCells * block_at(i);
+      leaves[i] = new VoxelGrid::Leaf(openvdb::Coord(cell.x, cell.y, cell.z), 0);
+      fill_leaf(cell_faces(s, table, block_at(i)), first[i], *leaves[i]);
+    });
+  };
+  std::vector<shared::Side> sides;
+  tbb::parallel_invoke(make_leaves, [&] { sides.resize(first[count]); });
+  VoxelGrid voxels(s.grid, std::move(sides), leaves);
   const SideWriter writer(s, voxels, voxels.mutable_sides().data());
   tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
     const BlockFaces* block = table[s.occupied[i]].get();

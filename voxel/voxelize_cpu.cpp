@@ -16,15 +16,39 @@ VoxelGrid voxelize(const slicing::SlicedScene& s) {
 
 }  // namespace
 
-VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid) { return voxelize(slicing::slice_scene(scene, grid)); }
+Mipmaps voxelization_mipmaps(const Scene& scene) {
+  Mipmaps mipmaps(scene);
+  for (const Material& m : scene.materials) {
+    if (m.base_color.texture >= 0) mipmaps.prepare(m.base_color.texture, true);
+    if (m.metallic.texture >= 0) mipmaps.prepare(m.metallic.texture, false);
+    if (m.emissive.texture >= 0) mipmaps.prepare(m.emissive.texture, true);
+  }
+  return mipmaps;
+}
+
+VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
+  return voxelize(slicing::slice_scene(scene, grid, mipmaps));
+}
+
+CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
+  return slicing::make_cell_volumes(slicing::slice_scene(scene, grid, mipmaps));
+}
+
+Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
+  const slicing::SlicedScene s = slicing::slice_scene(scene, grid, mipmaps);
+  return {voxelize(s), slicing::make_cell_volumes(s)};
+}
+
+VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid) {
+  return voxelize_cpu(scene, grid, voxelization_mipmaps(scene));
+}
 
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid) {
-  return slicing::make_cell_volumes(slicing::slice_scene(scene, grid));
+  return cell_volumes_cpu(scene, grid, voxelization_mipmaps(scene));
 }
 
 Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid) {
-  const slicing::SlicedScene s = slicing::slice_scene(scene, grid);
-  return {voxelize(s), slicing::make_cell_volumes(s)};
+  return voxelize_all_cpu(scene, grid, voxelization_mipmaps(scene));
 }
 
 }  // namespace volgi

@@ -1,4 +1,5 @@
 #pragma once
+#include "core/mipmaps.h"
 #include "core/scene.h"
 #include "voxel/cell_volumes.h"
 #include "voxel/voxel_grid.h"
@@ -9,10 +10,17 @@ namespace volgi {
 /// own code (docs/theory.md#voxelization). Triangles are binned by leaf block and the blocks voxelized in parallel; the
 /// result does not depend on the number of threads. Cost: one visit of each fragment on the lattice three times finer
 /// than the cells.
+/// @param mipmaps  voxelization_mipmaps of the scene; without, they are made each time.
+VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid);
 
 /// Occupancy, albedo, normal and emission per cell, from the same fragments.
+CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid);
+
+/// Levels of all textures that voxelization samples. They depend on the scene's materials and images alone: who
+/// voxelizes a scene that moves makes them once. The scene must outlive them.
+Mipmaps voxelization_mipmaps(const Scene& scene);
 
 struct Voxelized {
   VoxelGrid voxels;
@@ -20,6 +28,7 @@ struct Voxelized {
 };
 
 /// Both, with the triangles placed and binned once.
+Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid);
 
 }  // namespace volgi

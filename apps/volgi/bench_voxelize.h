@@ -7,7 +7,9 @@ namespace volgi::app {
 
 /// Times of the CPU's voxelization, and of OpenVDB's meshToVolume (narrow band of one cell on both sides, same spacing)
 /// in the same run: what is asked of the first is a ratio. Medians over `repeats` runs that take turns, after one that
-/// warms up; all threads.
+/// warms up; all threads. Made before and not timed: the textures' mipmaps, which a scene that
+/// moves keeps (voxelization_mipmaps; VolumeCpu does the same), and meshToVolume's list of points and triangles, which
+/// it would not keep. All else is timed, memory given back included.
 /// @return {"scene", "triangles", "threads", "grid": [x,y,z], "sides", "cells", "repeats", "sides_ms", "cells_ms",
 ///   "all_ms", "mesh_to_volume_ms", "ratio"}: sides_ms for sides with normal, albedo, emission and area (voxelize_cpu),
 ///   cells_ms for occupancy, albedo, normal and emission of cells (cell_volumes_cpu), all_ms for both in one go; ratio

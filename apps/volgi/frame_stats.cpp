@@ -30,7 +30,7 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"vpls", report.virtual_lights},
       {"negative_lights", report.negative_lights},
       {"coarse_share", report.coarse_share},
-      {"vals", 0},
+      {"vals", report.area_lights},
       {"backend", report.volume.on_gpu ? "gpu" : "cpu"},
       {"memory_bytes", report.memory_bytes},
       {"power_W",

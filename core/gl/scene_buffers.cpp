@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/mipmaps.h"
+#include "shared/scene_vertex.shared.h"
 
 namespace volgi::gl {
 namespace {
@@ -21,6 +22,10 @@ struct Vertex {
   GLuint object_id;
 };
 static_assert(sizeof(Vertex) == 72 && offsetof(Vertex, geometric_normal) == 56);
+static_assert(sizeof(Vertex) == VERTEX_FLOATS * sizeof(float));
+static_assert(offsetof(Vertex, position) == VERTEX_POSITION * sizeof(float));
+static_assert(offsetof(Vertex, uv) == VERTEX_UV0 * sizeof(float) && VERTEX_UV1 == VERTEX_UV0 + 2);
+static_assert(offsetof(Vertex, color) == VERTEX_COLOR * sizeof(float));
 
 /// Unit front-side normal; zero without area, which no rasterizer draws. Double, so that slivers keep a direction.
 glm::vec3 front_normal(const std::array<glm::vec3, 3>& p) {
@@ -169,6 +174,28 @@ void SceneBuffers::draw(const Program& program) const {
     glDrawArrays(GL_TRIANGLES, range.first, range.count);
   }
   glBindVertexArray(0);
+}
+
+void SceneBuffers::visit_triangles(GLuint binding, std::initializer_list<const Program*> alpha_programs,
+                                   const std::function<void(const Triangles&)>& visit) const {
+  vertices_.bind_storage(binding);
+  Triangles opaque{0, 0, true};
+  const auto visit_opaque = [&] {
+    if (opaque.count > 0) visit(opaque);
+    opaque.count = 0;
+  };
+  for (const Range& range : ranges_) {
+    const Triangles triangles{range.first / 3, range.count / 3, false};
+    if (materials_[size_t(range.material)].alpha_mode == AlphaMode::opaque) {
+      if (opaque.count == 0) opaque.first = triangles.first;
+      opaque.count += triangles.count;
+    } else {
+      visit_opaque();
+      for (const Program* program : alpha_programs) bind_material(*program, range.material);
+      visit(triangles);
+    }
+  }
+  visit_opaque();
 }
 
 size_t SceneBuffers::triangle_count() const { return triangles_; }

@@ -1,4 +1,6 @@
 #pragma once
+#include <functional>
+#include <initializer_list>
 #include <map>
 #include <vector>
 
@@ -19,6 +21,18 @@ class SceneBuffers {
   /// Draws everything with `program`, which must include shared/material.glsl: per material it sets the material
   /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive). Skips meshes without triangles.
   void draw(const Program& program) const;
+
+  /// Triangles [first, first + count) of the vertex buffer.
+  struct Triangles {
+    GLint first;
+    GLsizei count;
+    bool opaque;
+  };
+  /// For compute shaders that read vertices as storage (shared/scene_vertex.shared.h): binds them at `binding` and
+  /// visits all triangles. Neighbouring opaque materials come together; before the triangles of one that is not, it is
+  /// set on `alpha_programs` as draw() does.
+  void visit_triangles(GLuint binding, std::initializer_list<const Program*> alpha_programs,
+                       const std::function<void(const Triangles&)>& visit) const;
   size_t triangle_count() const;
   size_t bytes() const;  // GPU memory
   const std::vector<Material>& materials() const;

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 uniform int first_triangle;
 uniform int triangle_count;
 
-#define FEW_TEXELS 64  // a group of the other shader
+#define FEW_TEXELS (TILE_TEXELS * TILE_TEXELS)
 
 struct Bounds {
   vec2 low, high;
@@ -98,5 +98,10 @@ void main() {
     list_tiles(t, triangle, low, high);
     return;
   }
-  for (int i = 0; i < size.x * size.y; ++i) draw_texel(t, low + ivec2(i % size.x, i / size.x));
+  ivec2 texel = low;
+  for (int i = 0; i < size.x * size.y; ++i) {  // one loop, as neighbouring triangles have other shapes
+    draw_texel(t, texel);
+    texel.x += 1;
+    if (texel.x > high.x) texel = ivec2(low.x, texel.y + 1);
+  }
 }

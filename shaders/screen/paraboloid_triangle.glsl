@@ -78,8 +78,8 @@ vec2 disk_of_texel(ivec2 texel) {
 }
 
 #ifdef ALPHA
-float lod_area;  // texture space (u, v) per texel of the map
-float lod_area_1;
+float lod_area = 0.0;  // texture space (u, v) per texel of the map
+float lod_area_1 = 0.0;
 
 float texture_lod(sampler2D image, int texcoord, mat3 transform) {
   vec2 size = vec2(textureSize(image, 0));

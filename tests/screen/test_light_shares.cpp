@@ -4,14 +4,13 @@
 #include <cmath>
 #include <numeric>
 
-#include "screen/light_shares.h"
+#include "core/light_shares.h"
 #include "tests/screen/virtual_light_scenes.h"
 
 namespace volgi::test {
 namespace {
 
 TEST(LightShares, FollowPowerAndSumToTheCount) {
-  using screen::share_out;
   EXPECT_EQ(share_out({1, 2, 1}, 1024), (std::vector<int>{256, 512, 256}));
   EXPECT_EQ(share_out({1, 1, 1}, 1024), (std::vector<int>{342, 341, 341}));
   EXPECT_EQ(share_out({0, 1e9, 1e-3}, 100), (std::vector<int>{0, 99, 1}));
@@ -37,11 +36,10 @@ TEST(LightShares, PowerOfSpotsIsTheIntegralOfTheirFalloff) {
     for (int i = 0; i < steps; ++i) sum += std::pow(std::min(1.0, (i + 0.5) / steps * outer / ramp), 2.0);
     const double brightness = 2.0 * (0.2126 + 0.8 * 0.7152 + 0.6 * 0.0722);
     const double expected = 2.0 * glm::pi<double>() * outer * sum / steps * brightness;
-    EXPECT_NEAR(screen::power_luminance(light, {}, {}) / expected, 1.0, 1e-5);
+    EXPECT_NEAR(power_luminance(light, {}, {}) / expected, 1.0, 1e-5);
   }
   const Light sun = sun_light({0, -1, 0}, 1.0f);
-  EXPECT_NEAR(screen::power_luminance(sun, -kHalf, kHalf) / screen::power_luminance(sun, -kHalf, 3.0f * kHalf), 0.25,
-              1e-5);
+  EXPECT_NEAR(power_luminance(sun, -kHalf, kHalf) / power_luminance(sun, -kHalf, 3.0f * kHalf), 0.25, 1e-5);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "core/surface.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/voxel/cpu_voxels.h"
+#include "voxel/side_search_around.h"
 #include "voxel/voxelize_cpu.h"
 
 namespace volgi::test {
@@ -98,6 +99,36 @@ TEST(SidesOfPoint, AgreesWithThePlainSearch) {
   EXPECT_GT(nothing, 50);  // failing is searched for to the end
   EXPECT_LT(other, asked / 500);
   RecordProperty("other", other);
+}
+
+// The same bits, in the columns that the kernels say matter.
+TEST(ColumnsAround, KernelsAgree) {
+  if (columns_around() == columns_around_baseline) GTEST_SKIP() << "there is no other kernel for this machine";
+  Random random;
+  constexpr int kStride = 20, kRow = 12 * kStride;
+  std::vector<unsigned char> bytes(size_t(12 * kRow + 4));
+  for (auto& byte : bytes) byte = random() > 0.4f ? static_cast<unsigned char>(127.5f + 127.5f * random()) : 0;
+  int found = 0, left_out = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const glm::vec3 point = 30.0f + 30.0f * random.vec(), low = glm::floor(point);
+    const glm::vec3 slope = (i % 3 == 0 ? 8.0f : 2.0f) * random.vec();
+    const unsigned char* own = bytes.data() + 5 * kRow + 5 * kStride + 4;
+    const AroundQuery query{point.x, point.y, point.z, low.x, low.y,          low.z, slope.y,
+                            slope.z, 3.0f,    kStride, kRow,  {own, own + 3}, {1, 2}};
+    AroundColumns a, b;
+    const unsigned mask = columns_around_baseline(query, a);
+    ASSERT_EQ(mask, columns_around()(query, b));
+    for (int k = 0; k < 16; ++k) {
+      left_out += (mask >> k & 1u) == 0;
+      if ((mask >> k & 1u) == 0) continue;
+      ++found;
+      ASSERT_EQ(a.depth[k % 8], b.depth[k % 8]);
+      ASSERT_EQ(a.face[k % 8], b.face[k % 8]);
+      ASSERT_EQ(a.three[k / 8][k % 8], b.three[k / 8][k % 8]);
+    }
+  }
+  EXPECT_GT(found, 10000);
+  EXPECT_GT(left_out, 10000);
 }
 
 }  // namespace

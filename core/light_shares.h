@@ -5,7 +5,7 @@
 #include "core/scene.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
-namespace volgi::screen {
+namespace volgi {
 
 /// How many of the virtual lights each source gets.
 struct LightShares {
@@ -30,4 +30,4 @@ LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int coun
 /// `each` for every source that sends anything.
 LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each);
 
-}  // namespace volgi::screen
+}  // namespace volgi

@@ -1,4 +1,4 @@
-#include "screen/light_shares.h"
+#include "core/light_shares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "core/light_layers.h"
 
-namespace volgi::screen {
+namespace volgi {
 namespace {
 
 double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
@@ -108,4 +108,4 @@ LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each)
   return from_counts(counts);
 }
 
-}  // namespace volgi::screen
+}  // namespace volgi

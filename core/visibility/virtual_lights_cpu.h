@@ -1,0 +1,35 @@
+#pragma once
+#include <vector>
+
+#include "core/emitter_points.h"
+#include "core/visibility/embree_scene.h"
+#include "shaders/shared/virtual_light.shared.h"
+
+namespace volgi {
+
+/// Reflected lights first, in the order of the scene's lights, then those on emissive surfaces.
+struct VirtualLightsCpu {
+  std::vector<shared::VirtualLight> lights;
+  int reflected = 0;
+  static constexpr int kReturnRays = 8;
+  int emitted() const { return int(lights.size()) - reflected; }
+};
+
+/// Virtual point lights without GL: twin of screen/virtual_lights with Sampling::halton, which looks the same samples
+/// up in reflective shadow maps. Rays meet surfaces where they are; maps know them to a texel, so that the two differ
+/// at silhouettes, at edges of albedo and in texture detail. BLEND surfaces stop a ray with probability alpha (hashed).
+/// Flux and area: conventions.md, "VPL"; Cochran and Steele 2007, §3.1.
+/// Cost: one ray a light, in parallel; the result does not depend on threads.
+/// @param emitters  of embree.scene().
+/// @param count     of all sources together, shared by power (core/light_shares.h); at least 1.
+VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count);
+
+/// `count` of `candidates` times as many, chosen in proportion to the flux that meets a surface again: what a sun sends
+/// to the outside of a room is no light in it. That flux is known from kReturnRays cosine-distributed rays a candidate;
+/// none is ruled out, and what is chosen stands for the flux and area of what is not, so that sums keep their mean.
+/// Lights are in the order of a curve through what their source sends (core/hilbert.h), neighbours beside each other:
+/// every n-th of them is an even choice, too. Cost: 1 + kReturnRays rays a candidate, in parallel.
+VirtualLightsCpu chosen_virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
+                                           int candidates);
+
+}  // namespace volgi

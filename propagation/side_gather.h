@@ -1,0 +1,33 @@
+#pragma once
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/visibility/embree_scene.h"
+#include "shaders/shared/virtual_light.shared.h"
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+/// Which of every `stride` virtual lights a side takes: 0 ... stride - 1. An additive recurrence over the cells
+/// (Roberts 2018: powers of 1/1.2207..., in units of 2^-32) and the faces, so that sides beside each other take
+/// different lights and their mean knows most of them, whatever order sides are in.
+inline int first_light_of_side(glm::ivec3 cell, int face, int stride) {
+  const std::uint32_t place = 3518319155u * std::uint32_t(cell.x) + 2882110345u * std::uint32_t(cell.y) +
+                              2360945575u * std::uint32_t(cell.z) + 2654435769u * std::uint32_t(face);
+  return int((std::uint64_t(place) * std::uint64_t(stride)) >> 32);
+}
+
+/// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi cos_side cos_light / (pi d^2 + A) over
+/// those that a ray from the side's surface reaches; every stride-th light, `stride` times as bright. No result depends
+/// on the number of threads. Cost: at most count / stride rays a side, a few more where an edge is near.
+/// @param stride  best without a factor 2 or 3: lights come along Halton's sequence in these bases, and every 16th of
+///                them, say, is a wedge of one sixteenth.
+std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
+                                   std::span<const shared::VirtualLight> lights, int stride);
+
+/// What sides reflect of it, A rho E [W]: SideFlux of the volume that carries the bounces after
+/// (docs/theory.md#light-in). E is that of the surface's plane, so A is the side's own area, however it is tilted.
+std::vector<glm::vec4> reflected_flux(const VoxelGrid& voxels, std::span<const glm::vec4> irradiance);
+
+}  // namespace volgi

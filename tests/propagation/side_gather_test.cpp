@@ -1,0 +1,314 @@
+// Sides lit by virtual lights, and what the volume makes of it: the first bounce belongs to the screen.
+#include "propagation/side_gather.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/visibility/virtual_lights_cpu.h"
+#include "propagation/volume_cpu.h"
+#include "tests/support/box_radiosity.h"
+#include "tests/support/volume_scenes.h"
+#include "voxel/voxelize_cpu.h"
+
+namespace volgi::test {
+namespace {
+
+using shared::Side;
+
+constexpr int kPatches = 16;
+constexpr float kAlbedo = 0.7f;
+const glm::vec3 kLamp(0.0f, 0.5f, 0.0f);
+
+const BoxRadiosity& box() {
+  static const BoxRadiosity radiosity(kPatches);
+  return radiosity;
+}
+
+/// [-1,1]^3, open to nothing.
+Scene closed_box() {
+  Scene scene;
+  add_box_inside(scene, add_material(scene, glm::vec3(kAlbedo)), glm::vec3(0.0f), glm::vec3(1.0f));
+  return scene;
+}
+
+/// Half a metre square in the middle of the ceiling, of 1 W.
+void add_ceiling_emitter(Scene& scene) {
+  const int material = add_material(scene, glm::vec3(kAlbedo), glm::vec3(1.0f / (0.25f * glm::pi<float>())));
+  add_square(scene, material, {0.0f, 0.9999f, 0.0f}, {0.0f, -1.0f, 0.0f}, 0.25f);
+}
+
+struct Gathered {
+  VoxelGrid voxels;
+  VirtualLightsCpu lights;
+  std::vector<glm::vec4> irradiance;
+
+  Gathered(const Scene& scene, int cells, int count, int stride, glm::vec3 shift_cells = glm::vec3(0.0f))
+      : Gathered(scene, EmbreeScene(scene), make_grid(scene, cells, shift_cells), count, stride) {}
+  Gathered(const Scene& scene, const EmbreeScene& embree, const Grid& grid, int count, int stride)
+      : voxels(voxelize_cpu(scene, grid)), lights(virtual_lights_cpu(embree, EmitterPoints(scene), count)) {
+    irradiance = side_gather(voxels, embree, lights.lights, stride);
+  }
+
+  double power(size_t i) const { return double(irradiance[i].x) * double(voxels.sides()[i].area_m2); }
+  double power() const {
+    double sum = 0.0;
+    for (size_t i = 0; i < irradiance.size(); ++i) sum += power(i);
+    return sum;
+  }
+  size_t patch(size_t i) const {
+    const Side& side = voxels.sides()[i];
+    const glm::ivec3 c = shared::cell_coord(voxels.grid(), side.cell) * kPatches / voxels.grid().cells;
+    const int axis = side.face >> 1;
+    return box().index(side.face, c[shared::axis_b(axis)], c[shared::axis_c(axis)]);
+  }
+};
+
+/// Irradiance of the walls straight from the lamp, 1 W in all directions together.
+std::vector<double> lamp_irradiance() {
+  std::vector<double> out(box().patch_count());
+  constexpr int kPoints = 4;  // on an edge of a patch
+  for (int wall = 0; wall < 6; ++wall) {
+    for (int c = 0; c < kPatches * kPoints; ++c) {
+      for (int b = 0; b < kPatches * kPoints; ++b) {
+        const int axis = wall >> 1;
+        glm::dvec3 at(0.0);
+        at[axis] = (wall & 1) != 0 ? 1.0 : -1.0;
+        at[shared::axis_b(axis)] = 2.0 * (b + 0.5) / (kPatches * kPoints) - 1.0;
+        at[shared::axis_c(axis)] = 2.0 * (c + 0.5) / (kPatches * kPoints) - 1.0;
+        const glm::dvec3 d = at - glm::dvec3(kLamp);
+        const double distance = glm::length(d);
+        out[box().index(wall, b / kPoints, c / kPoints)] +=
+            std::abs(d[axis]) / (distance * distance * distance * 4.0 * M_PI * kPoints * kPoints);
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<double> emitter_irradiance() {
+  std::vector<double> emitted(box().patch_count(), 0.0);
+  for (int c = 6; c < 10; ++c) {
+    for (int b = 6; b < 10; ++b) emitted[box().index(3, b, c)] = 4.0;  // 1 W from 0.25 m^2
+  }
+  return box().irradiance(emitted);
+}
+
+Light lamp() { return point_light(kLamp, glm::vec3(0.25f * glm::one_over_pi<float>())); }
+
+double rmse_percent(const std::vector<double>& values, const std::vector<double>& exact) {
+  double squares = 0.0, sum = 0.0;
+  for (size_t i = 0; i < exact.size(); ++i) {
+    squares += (values[i] - exact[i]) * (values[i] - exact[i]);
+    sum += exact[i];
+  }
+  return 100.0 * std::sqrt(squares * double(exact.size())) / sum;
+}
+
+std::vector<double> by_patch(const Gathered& g) {
+  std::vector<double> out(box().patch_count(), 0.0);
+  for (size_t i = 0; i < g.irradiance.size(); ++i) out[g.patch(i)] += g.power(i) / box().patch_area();
+  return out;
+}
+
+// The power is what a convex box must get; the pattern, what so few lights make of radiosity's.
+TEST(SideGather, AgreesWithRadiosity) {
+  Scene lit = closed_box();
+  lit.lights = {lamp()};
+  const std::vector<double> first = box().bounce(lamp_irradiance(), double(kAlbedo));
+  Scene emissive = closed_box();
+  add_ceiling_emitter(emissive);
+  for (auto [count, limit] : {std::pair(1024, 8.0), {8192, 2.0}}) {
+    const Gathered g(lit, kPatches, count, 1);
+    EXPECT_EQ(g.lights.reflected, count);
+    // Disks that stand for more surface than their distance lose power near edges: as 1 / sqrt(count).
+    RecordProperty("lamp_power_" + std::to_string(count), std::to_string(g.power() / double(kAlbedo)));
+    EXPECT_NEAR(g.power() / double(kAlbedo), 1.0, 1.2 / std::sqrt(double(count)));
+    const double error = rmse_percent(by_patch(g), first);
+    RecordProperty("lamp_rmse_percent_" + std::to_string(count), std::to_string(error));
+    EXPECT_LT(error, limit);
+    const Gathered e(emissive, kPatches, count, 1);
+    EXPECT_EQ(e.lights.emitted(), count);
+    double outside = 0.0, exact = 0.0;  // of the ceiling: the emitter hangs below it, in front of sides of its own
+    const std::vector<double> arriving = by_patch(e), direct = emitter_irradiance();
+    for (size_t i = 0; i < direct.size(); ++i) outside += arriving[i], exact += direct[i];
+    EXPECT_NEAR(outside / exact, 1.0, 0.01);
+    RecordProperty("emitter_rmse_percent_" + std::to_string(count), std::to_string(rmse_percent(arriving, direct)));
+    EXPECT_LT(rmse_percent(arriving, direct), 2.0);
+  }
+}
+
+// Tilted sides stand for their plane: turned, the box's walls get and reflect the same power.
+TEST(SideGather, TurnedBoxReflectsTheSame) {
+  Scene scene;
+  add_box_inside(scene, add_material(scene, glm::vec3(kAlbedo)), glm::vec3(0.0f), glm::vec3(1.0f),
+                 rotation(glm::normalize(glm::vec3(1, 2, 3)), 30.0f));
+  scene.lights = {lamp()};
+  scene.lights[0].position = glm::vec3(0.0f);
+  const Gathered g(scene, 32, 8192, 5);
+  double flux = 0.0;
+  for (const glm::vec4& f : reflected_flux(g.voxels, g.irradiance)) flux += double(f.x);
+  RecordProperty("power_ratio", std::to_string(flux / double(kAlbedo * kAlbedo)));
+  EXPECT_NEAR(flux / double(kAlbedo * kAlbedo), 1.0, 0.02);
+}
+
+constexpr double kNothing = 1e-12;  // lights and sides of one plane, by rounding
+
+/// Share of the light that sides get which only cells beyond `wall_x` see.
+double leaked(const Scene& scene, int cells, float shift, float wall_x) {
+  const Gathered g(scene, cells, 1024, 1, glm::vec3(shift));
+  double dark = 0.0;
+  size_t darks = 0;
+  for (size_t i = 0; i < g.irradiance.size(); ++i) {
+    const glm::ivec3 cell = shared::cell_coord(g.voxels.grid(), g.voxels.sides()[i].cell);
+    if (shared::world_from_cell(g.voxels.grid(), glm::vec3(cell) + 0.5f).x <= wall_x) continue;
+    dark += g.power(i);
+    ++darks;
+  }
+  EXPECT_GT(darks, g.irradiance.size() / 4);
+  EXPECT_GT(g.power(), 0.0);
+  return dark / g.power();
+}
+
+// Walls thinner than a cell, of no thickness, and through cells' centres.
+TEST(SideGather, NothingPassesThinWalls) {
+  const Scene thin = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/thin_wall.glb");
+  const float beyond = float(0.0101 - thin.world_origin.x);
+  for (int cells : {12, 16, 24, 32}) {
+    for (float shift : {0.0f, 0.25f, 0.37f, 0.5f}) {
+      EXPECT_LT(leaked(thin, cells, shift, beyond), kNothing) << cells << " cells, shifted by " << shift;
+    }
+  }
+  for (float x : {0.0f, 0.01f, 0.0625f, 0.0626f}) {
+    Scene paper = closed_box();
+    add_quad(paper, 0, {x, -1, -1}, {0, 2, 0}, {0, 0, 2});
+    paper.lights = {point_light({-0.5f, 0.2f, 0.1f}, glm::vec3(1.0f))};
+    EXPECT_LT(leaked(paper, 16, 0.0f, x + 0.001f), kNothing) << x;
+  }
+}
+
+// The mean stays; single sides take what few lights give.
+TEST(SideGather, StrideKeepsTheMean) {
+  Scene scene = closed_box();
+  add_ceiling_emitter(scene);
+  scene.lights = {lamp(), lamp()};
+  scene.lights[1].position = {0.5f, -0.3f, 0.2f};
+  const Gathered all(scene, kPatches, 1024, 1);
+  for (auto [stride, limit] : {std::pair(5, 12.0), {17, 30.0}, {65, 60.0}}) {
+    const Gathered few(scene, kPatches, 1024, stride);
+    EXPECT_NEAR(few.power() / all.power(), 1.0, 0.02) << stride;
+    double squares = 0.0;
+    std::vector<int> taken(size_t(stride), 0);
+    for (size_t i = 0; i < all.irradiance.size(); ++i) {
+      const Side& side = all.voxels.sides()[i];
+      ++taken[size_t(first_light_of_side(shared::cell_coord(all.voxels.grid(), side.cell), side.face, stride))];
+      squares += std::pow(few.power(i) - all.power(i), 2.0);
+    }
+    const double rms = 100.0 * std::sqrt(squares * double(all.irradiance.size())) / all.power();
+    RecordProperty("side_rms_percent_" + std::to_string(stride), std::to_string(rms));
+    EXPECT_LT(rms, limit) << stride;
+    const double mean = double(all.irradiance.size()) / stride;
+    for (int n : taken) EXPECT_NEAR(n / mean, 1.0, 0.5) << stride;
+  }
+}
+
+TEST(SideGather, SameOnAnyNumberOfThreads) {
+  const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/thin_wall.glb");
+  const auto run = [&](size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return Gathered(scene, 16, 512, 5).irradiance;
+  };
+  const std::vector<glm::vec4> one = run(1);
+  EXPECT_EQ(one, run(2));
+  EXPECT_EQ(one, run(5));
+}
+
+VolumeOptions first_bounce_options(std::optional<int> bounces) {
+  VolumeOptions o;
+  o.grid_cells = kPatches;
+  o.source = VolumeOptions::Source::first_bounce;
+  o.bounces = bounces;
+  o.virtual_lights = 16384;  // for their energy
+  o.virtual_light_stride = 65;
+  return o;
+}
+
+/// Power that the volume's light brings to the walls [W].
+double indirect_power(const Scene& scene, std::optional<int> bounces) {
+  VolumeCpu volume(scene, first_bounce_options(bounces));
+  volume.run();
+  double sum = 0.0;
+  for (size_t i = 0; i < volume.voxels().side_count(); ++i) {
+    EXPECT_EQ(volume.irradiance().direct[i].x, 0.0f);
+    sum += double(volume.irradiance().indirect[i].x) * double(volume.voxels().sides()[i].area_m2);
+  }
+  return sum;
+}
+
+// In a closed room of one albedo bounce k brings rho^k of what was sent.
+TEST(VolumeAfterFirstBounce, CarriesTheBouncesThatAreLeft) {
+  Scene lit = closed_box();
+  lit.lights = {lamp()};
+  Scene emissive = closed_box();
+  add_ceiling_emitter(emissive);
+  Scene both = emissive;
+  both.lights = {lamp()};
+  const double rho = double(kAlbedo);
+  double of_lamp = 0.0, of_emitter = 0.0;
+  for (int bounces = 0; bounces <= 4; ++bounces) {
+    if (bounces >= 1) of_emitter += std::pow(rho, bounces);
+    if (bounces >= 2) of_lamp += std::pow(rho, bounces);
+    RecordProperty("powers_" + std::to_string(bounces),
+                   std::to_string(indirect_power(lit, bounces) / of_lamp) + ' ' +
+                       std::to_string(indirect_power(emissive, bounces) / of_emitter));
+    EXPECT_NEAR(indirect_power(lit, bounces), of_lamp, 0.025 * of_lamp) << bounces;
+    EXPECT_NEAR(indirect_power(emissive, bounces), of_emitter, 0.025 * of_emitter) << bounces;
+    EXPECT_NEAR(indirect_power(both, bounces), of_lamp + of_emitter, 0.025 * (of_lamp + of_emitter)) << bounces;
+  }
+  EXPECT_NEAR(indirect_power(both, {}) / ((rho + rho * rho) / (1.0 - rho)), 1.0, 0.025);
+}
+
+// As tests/hardcases/closed_box_test.cpp, but what sides start from is gathered.
+TEST(VolumeAfterFirstBounce, TotalIndirectOfTheClosedBox) {
+  Scene lit = closed_box();
+  lit.lights = {lamp()};
+  const std::vector<double> first = box().bounce(lamp_irradiance(), double(kAlbedo));
+  std::vector<double> exact(first), order(first), total(first);
+  for (int k = 0; k < 60; ++k) {
+    order = box().bounce(order, double(kAlbedo));
+    for (size_t i = 0; i < order.size(); ++i) exact[i] += order[i];
+  }
+  for (int stride : {1, VolumeOptions().virtual_light_stride}) {
+    VolumeOptions options = first_bounce_options({});
+    options.virtual_lights = VolumeOptions().virtual_lights;
+    options.virtual_light_stride = stride;
+    VolumeCpu volume(lit, options);
+    volume.run();
+    total = first;
+    for (size_t i = 0; i < volume.voxels().side_count(); ++i) {
+      const Side& side = volume.voxels().sides()[i];
+      const glm::ivec3 c = shared::cell_coord(volume.grid(), side.cell);
+      const int axis = side.face >> 1;
+      total[box().index(side.face, c[shared::axis_b(axis)], c[shared::axis_c(axis)])] +=
+          double(volume.irradiance().indirect[i].x);
+    }
+    const double error = rmse_percent(total, exact);
+    RecordProperty("rmse_percent_stride_" + std::to_string(stride), std::to_string(error));
+    EXPECT_LT(error, 3.0) << stride;
+  }
+}
+
+TEST(VolumeAfterFirstBounce, RefusesNoLights) {
+  VolumeOptions options = first_bounce_options({});
+  options.virtual_lights = 0;
+  EXPECT_THROW(VolumeCpu(closed_box(), options), Error);
+  options.virtual_lights = 1;
+  options.virtual_light_stride = 0;
+  EXPECT_THROW(VolumeCpu(closed_box(), options), Error);
+  EXPECT_EQ(indirect_power(closed_box(), {}), 0.0);
+}
+
+}  // namespace
+}  // namespace volgi::test
