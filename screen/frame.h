@@ -32,8 +32,7 @@ struct FrameOptions {
   Backend backend = Backend::automatic;
   ReflectiveShadowMap::Resolution shadow_resolution;
   VirtualLightOptions virtual_lights;
-  int choose_one_of =
-      8;  // of so many candidates the virtual light that matters to the picture; 1: take them as they come
+  int choose_one_of = 16;  // candidates for each virtual light (ChooseVirtualLights); 1: take them as they come
   NegativeLightOptions negative_lights;
   GatherOptions gather;
   VirtualAreaLightOptions area_lights;

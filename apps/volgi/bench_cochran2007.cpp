@@ -106,11 +106,11 @@ nlohmann::json lights_table(const Scene& scene, const gl::Context& context, int 
   return rows;
 }
 
-/// The threshold that gives the paper's share: the share grows with it.
-double threshold_for(const Scene& scene, const gl::Context& context, screen::FrameOptions options, double share) {
-  double low = 0.0, high = 2.0;
+/// The contrast that gives the paper's share, which grows with it. (Thresholds alone leave flat walls coarse.)
+double contrast_for(const Scene& scene, const gl::Context& context, screen::FrameOptions options, double share) {
+  double low = 0.0, high = 1.0;
   for (int i = 0; i < 12; ++i) {
-    options.gather.threshold_rad = float(0.5 * (low + high));
+    options.gather.contrast = float(0.5 * (low + high));
     Repeated picture(scene, context, options);
     picture.render();
     const float reached = picture.coarse_share();
@@ -140,16 +140,21 @@ nlohmann::json share_table(const Scene& scene, const gl::Context& context, int f
   for (const ShareRow& row : kShares) {
     screen::FrameOptions o = full;
     o.gather.stride = row.share > 0.0 ? 2 : 1;
-    // Of the paper's criteria there is one threshold; ours has more, and these rows vary the first alone.
-    o.gather.contrast = 1.0f;
-    o.gather.distance = 1.0f;
-    if (row.share == 1.0) o.gather.threshold_rad = 10.0f;
-    if (row.share > 0.0 && row.share < 1.0) o.gather.threshold_rad = float(threshold_for(scene, context, o, row.share));
-    add(fmt::format("threshold {:.3g}", o.gather.threshold_rad), o, &row);
+    if (row.share == 1.0) o.gather = {2, 10.0f, 1.0f, 1.0f};
+    if (row.share > 0.0 && row.share < 1.0) o.gather.contrast = float(contrast_for(scene, context, o, row.share));
+    add(row.share == 0.0   ? "every pixel"
+        : row.share == 1.0 ? "coarse wherever there is something"
+                           : fmt::format("contrast {:.3g}", o.gather.contrast),
+        o, &row);
   }
   screen::FrameOptions defaults = full;
   defaults.gather = {};
   add("defaults", defaults, nullptr);
+  for (screen::FrameOptions* o : {&full, &defaults}) {
+    o->virtual_lights.count = 300;
+    o->negative_lights.count = 150;
+  }
+  add("defaults, 300 and 150 lights", defaults, nullptr);
   return rows;
 }
 
