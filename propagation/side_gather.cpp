@@ -86,9 +86,10 @@ Start start_of(const VoxelGrid& voxels, const EmbreeScene& embree, const Side& s
   return {shared::world_from_cell(voxels.grid(), point), centre, {}};
 }
 
-/// @param end  of rays to the light: beside its surface.
+/// @param end      of rays to the light: beside its surface.
+/// @param area_m2  that the light stands for here.
 glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start& start, const VirtualLight& light,
-                        glm::vec3 end, std::uint32_t seed) {
+                        glm::vec3 end, float area_m2, std::uint32_t seed) {
   const glm::vec3 to_light = light.position - start.position;
   const float along_side = glm::dot(to_light, side.normal), along_light = -glm::dot(to_light, light.normal);
   const bool dark = light.flux == glm::vec3(0.0f);
@@ -100,7 +101,7 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
   }
   const float squared = glm::dot(to_light, to_light);
   const float cosines = along_side * along_light / squared;
-  return light.flux * (cosines / (glm::pi<float>() * squared + light.area_m2));
+  return light.flux * (cosines / (glm::pi<float>() * squared + area_m2));
 }
 
 }  // namespace
@@ -120,7 +121,8 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
     glm::vec3 sum(0.0f);
     for (auto k = size_t(first_light_of_side(cell, side.face, stride)); k < lights.size(); k += size_t(stride)) {
       const std::uint32_t seed = std::uint32_t(i) * 2654435769u + std::uint32_t(k);
-      sum += irradiance_of(embree, side, start, lights[k], ends[k], seed);
+      const float area_m2 = std::min(float(stride) * lights[k].area_m2, lights[k].area_m2 + side.area_m2);
+      sum += irradiance_of(embree, side, start, lights[k], ends[k], area_m2, seed);
     }
     irradiance[i] = glm::vec4(sum * float(stride), 0.0f);
   });

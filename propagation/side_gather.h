@@ -19,10 +19,12 @@ inline int first_light_of_side(glm::ivec3 cell, int face, int stride) {
 }
 
 /// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi cos_side cos_light / (pi d^2 + A) over
-/// those that a ray from the side's surface reaches; every stride-th light, `stride` times as bright. No result depends
-/// on the number of threads. Cost: at most count / stride rays a side, a few more where an edge is near.
-/// @param stride  best without a factor 2 or 3: lights come along Halton's sequence in these bases, and every 16th of
-///                them, say, is a wedge of one sixteenth.
+/// those that a ray from the side's surface reaches. A side takes every stride-th light, `stride` times as bright. Such
+/// a light stands for stride A of surface, too, but a side cannot tell apart what is nearer together than it is large:
+/// its own area is the most that is added, which takes the peaks off single sides. No result
+/// depends on the number of threads. Cost: at most count / stride rays a side, a few more where an edge is near.
+/// @param lights  where stride > 1, every stride-th should be an even choice: chosen_virtual_lights_cpu(). Lights along
+///                Halton's sequence are that for strides without a factor 2 or 3 only; every 16th is a wedge.
 std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
                                    std::span<const shared::VirtualLight> lights, int stride);
 

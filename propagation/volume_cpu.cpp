@@ -138,7 +138,9 @@ void VolumeCpu::first_bounce_in() {
   flux_.lost = glm::vec3(0.0f);
   emits_ = false;
   if (!embree_ || options_.bounces == 0) return;
-  virtual_lights_ = virtual_lights_cpu(*embree_, *emitters_, options_.virtual_lights);
+  const int count = options_.virtual_lights, candidates = options_.virtual_light_candidates;
+  virtual_lights_ = candidates > 1 ? chosen_virtual_lights_cpu(*embree_, *emitters_, count, candidates)
+                                   : virtual_lights_cpu(*embree_, *emitters_, count);
   const std::span<const shared::VirtualLight> all = virtual_lights_.lights;
   const auto brought_by = [&](std::span<const shared::VirtualLight> lights) {
     return reflected_flux(voxels_, side_gather(voxels_, *embree_, lights, options_.virtual_light_stride));

@@ -22,8 +22,11 @@ struct VolumeOptions {
   /// virtual lights at its sides, where the screen carries the first bounce of punctual light and the arrival of
   /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (techniques, "Composition").
   enum class Source { lights, first_bounce } source = Source::lights;
-  int virtual_lights = 1024;      // of first_bounce
-  int virtual_light_stride = 17;  // each side takes every so many of them (propagation/side_gather.h)
+  // Of first_bounce (core/visibility/virtual_lights_cpu.h, propagation/side_gather.h):
+  int virtual_lights = 1024;         // at most kMostVirtualLights
+  int virtual_light_candidates = 4;  // times as many to choose from; 1: as they come
+  int virtual_light_stride = 32;     // each side takes every so many of them
+  static constexpr int kMostVirtualLights = 65536;
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 

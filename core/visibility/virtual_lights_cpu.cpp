@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "core/halton.h"
 #include "core/hilbert.h"
@@ -88,9 +89,13 @@ std::vector<LightRay> rays_of(const Scene& scene, const Light& light, int count)
 }
 
 void order_along_curve(std::vector<LightRay>& rays) {
-  std::stable_sort(rays.begin(), rays.end(), [](const LightRay& a, const LightRay& b) {
-    return hilbert_index(a.place) < hilbert_index(b.place);
-  });
+  std::vector<std::pair<std::uint32_t, size_t>> order(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) order[i] = {hilbert_index(rays[i].place), i};
+  std::sort(order.begin(), order.end());
+  std::vector<LightRay> ordered;
+  ordered.reserve(rays.size());
+  for (const auto& [key, i] : order) ordered.push_back(rays[i]);
+  rays = std::move(ordered);
 }
 
 VirtualLightsCpu make_lights(const EmbreeScene& embree, const EmitterPoints& emitters, const LightShares& shares,
@@ -125,11 +130,12 @@ double returning_flux(const EmbreeScene& embree, const VirtualLight& light, size
   const glm::vec3 b = glm::cross(n, a);
   int met = 0;
   for (int k = 0; k < VirtualLightsCpu::kReturnRays; ++k) {
-    const std::uint64_t sample = index * std::uint64_t(VirtualLightsCpu::kReturnRays) + std::uint64_t(k);
-    const glm::vec2 u(halton(sample + 1));
+    // An additive recurrence (Roberts 2018), even over the rays of one light and of all.
+    const auto sample = std::uint32_t(index) * std::uint32_t(VirtualLightsCpu::kReturnRays) + std::uint32_t(k);
+    const glm::vec2 u(float(3242174889u * sample >> 8) * 0x1p-24f, float(2447445414u * sample >> 8) * 0x1p-24f);
     const float across = std::sqrt(u.x), angle = glm::two_pi<float>() * u.y;
     const glm::vec3 direction = across * (std::cos(angle) * a + std::sin(angle) * b) + std::sqrt(1.0f - u.x) * n;
-    met += int(embree.occluded(origin, glm::normalize(direction), kFar, std::uint32_t(sample)));
+    met += int(embree.occluded(origin, glm::normalize(direction), kFar, sample));
   }
   return flux * (met + 0.5) / (VirtualLightsCpu::kReturnRays + 0.5);
 }
