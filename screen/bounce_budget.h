@@ -12,8 +12,9 @@ struct BounceBudget {
 };
 
 /// Techniques that --gi can name. `vpl`, `negative` and `val` are first-order: of emissive surfaces they carry the
-/// arrival, of punctual lights the first reflection, and nothing after it.
-enum class GiMode { none, volume, vpl, negative, val };
+/// arrival, of punctual lights the first reflection, and nothing after it. `hybrid` adds the volume's bounces to those
+/// of `val`.
+enum class GiMode { none, volume, vpl, negative, val, hybrid };
 
 inline BounceBudget bounce_budget(GiMode mode) {
   using Carrier = BounceBudget::Carrier;
@@ -22,6 +23,8 @@ inline BounceBudget bounce_budget(GiMode mode) {
       return {Carrier::nobody, Carrier::nobody, Carrier::nobody};
     case GiMode::volume:
       return {Carrier::volume, Carrier::volume, Carrier::volume};
+    case GiMode::hybrid:
+      return {Carrier::virtual_lights, Carrier::virtual_lights, Carrier::volume};
     case GiMode::vpl:
     case GiMode::negative:
     case GiMode::val:

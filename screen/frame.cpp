@@ -1,5 +1,6 @@
 #include "screen/frame.h"
 
+#include "core/error.h"
 #include "core/gl/context.h"
 #include "core/log.h"
 
@@ -26,6 +27,9 @@ bool needs_carrier(const Scene& scene, const FrameOptions& options) {
 }
 
 bool needs_volume(const Scene& scene, const FrameOptions& options) {
+  if (options.gi == GiMode::hybrid)  // its first bounce comes from the screen
+    return !direct_only(options) && (options.volume.bounces != 1 || has_emission(scene)) &&
+           needs_carrier(scene, options);
   if (options.gi != GiMode::volume) return false;
   // The papers' volumes do not know which of their light is direct.
   if (direct_only(options) && !carries_sides(options.volume.scheme.scheme)) return false;
@@ -64,6 +68,11 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
       direct_(options.size),
       compose_(options.size) {
   if (options.light == LightPart::direct && carries_sides(options.volume.scheme.scheme)) options_.volume.bounces = 0;
+  if (options_.gi == GiMode::hybrid) {
+    if (!carries_sides(options_.volume.scheme.scheme))
+      throw Error(ExitCode::usage, "--gi hybrid needs a scheme that carries orders: ordinates or conservative");
+    options_.volume.source = VolumeOptions::Source::first_bounce;
+  }
   if (needs_volume(scene, options_)) {
     volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
                                             : make_volume_on_cpu(scene, options_.volume, options_.size);
@@ -79,7 +88,7 @@ void Frame::make_first_bounce() {
   virtual_lights_ = std::make_unique<VirtualLights>(scene_, candidate_options(options_));
   if (options_.choose_one_of > 1)
     choose_virtual_lights_ = std::make_unique<ChooseVirtualLights>(options_.choose_one_of);
-  if (options_.gi == GiMode::val) {
+  if (options_.gi == GiMode::val || options_.gi == GiMode::hybrid) {
     area_lights_ = std::make_unique<VirtualAreaLights>(options_.area_lights);
     area_light_maps_ = std::make_unique<ParaboloidDepthMaps>(options_.area_light_map, options_.area_lights.count);
     area_light_shadow_ =
@@ -113,7 +122,6 @@ void Frame::light_by_area_lights(const VirtualLightListGl& lights, gl::PassTimer
 void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   shadow_maps_.run(buffers_, scene_, timer);
   gbuffer_.run(buffers_, camera, timer);
-  if (volume_) volume_->run(buffers_, shadow_maps_, gbuffer_, camera, timer);
   if (virtual_lights_) {
     virtual_lights_->run(shadow_maps_, timer);
     if (choose_virtual_lights_) choose_virtual_lights_->run(virtual_lights_->list(), gbuffer_, timer);
@@ -123,12 +131,21 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
       light_by_virtual_lights(light_list(), camera, timer);
     }
   }
+  if (volume_) {
+    if (area_lights_) {
+      const FirstBounce first_bounce{light_list(), *area_lights_, *area_light_maps_, *area_light_shadow_};
+      volume_->run(buffers_, shadow_maps_, gbuffer_, camera, &first_bounce, timer);
+    } else {
+      volume_->run(buffers_, shadow_maps_, gbuffer_, camera, nullptr, timer);
+    }
+  }
   direct_.run(gbuffer_, shadow_maps_, timer);
 
   RadianceLayers layers;
   layers.direct = {&direct_.radiance(), &gbuffer_.emission()};
   if (volume_) {
-    layers.direct.push_back(&volume_->direct());
+    // After a first bounce on the screen, what reaches surfaces from emission has been reflected before.
+    (area_lights_ ? layers.indirect : layers.direct).push_back(&volume_->direct());
     layers.indirect.push_back(&volume_->indirect());
   }
   if (virtual_lights_) {

@@ -6,6 +6,7 @@
 #include "propagation/volume_options.h"
 #include "screen/gbuffer.h"
 #include "screen/reflective_shadow_map.h"
+#include "screen/side_gather_gl.h"
 
 namespace volgi::screen {
 
@@ -24,8 +25,11 @@ struct VolumeReport {
 class FrameVolume {
  public:
   virtual ~FrameVolume() = default;
+  /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce on the GPU starts from, else null; one
+  /// on
+  ///   the CPU finds its own.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
-                   const Camera& camera, gl::PassTimer& timer) = 0;
+                   const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
   virtual const gl::Texture& direct() const = 0;    // RGBA32F: first arrival of emission, reflected to the viewer
   virtual const gl::Texture& indirect() const = 0;  // RGBA32F [W m^-2 sr^-1]
   /// Waits for the GPU; after a frame, not in one.

@@ -40,7 +40,7 @@ class SidesOnCpu : public FrameVolume {
       : volume_(scene, options), gather_(size) {}
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
-           const Camera& camera, gl::PassTimer& timer) override {
+           const Camera& camera, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
     run_stages(volume_, timer);
     {
       auto scope = timer.scope("screen/upload_volume");
@@ -99,7 +99,7 @@ class PulseOnCpu : public FrameVolume {
         gather_(size, options.scheme.sh_order) {}
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
-           const Camera& /*camera*/, gl::PassTimer& timer) override {
+           const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
     run_stages(volume_, timer);
     {
       auto scope = timer.scope("screen/upload_volume");

@@ -38,6 +38,13 @@ class LitVoxels {
     flux_.inject_emitters(voxels(), emitters_, timer, emission_apart);
     inject_.run(voxels(), maps, scene_, flux_, timer);
   }
+  /// The first bounce in, instead of light.
+  void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
+    voxelization_.run(buffers, timer);
+    flux_.begin(voxels());
+    if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.shadow);
+    side_gather_->run(voxels(), first_bounce, flux_, timer);
+  }
   const VoxelGridGl& voxels() const { return voxelization_.voxels(); }
   const SideFluxGl& flux() const { return flux_; }
   bool emits() const { return !emitters_.empty(); }
@@ -62,6 +69,7 @@ class LitVoxels {
   SideFluxGl flux_;
   InjectReflectiveShadowMap inject_;
   std::vector<FluxSample> emitters_;
+  std::unique_ptr<SideGatherGl> side_gather_;
 };
 
 /// Schemes that carry light from sides to sides.
@@ -74,8 +82,12 @@ class SidesOnGpu : public FrameVolume {
         gather_(size) {}
 
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
-           const Camera& camera, gl::PassTimer& timer) override {
-    lit_.run(buffers, maps, true, timer);
+           const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
+    if (first_bounce != nullptr) {
+      lit_.run(buffers, *first_bounce, timer);
+    } else {
+      lit_.run(buffers, maps, true, timer);
+    }
     bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits(), rules_, timer);
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
     gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), timer);
@@ -110,7 +122,7 @@ class PulseOnGpu : public FrameVolume {
   }
 
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
-           const Camera& /*camera*/, gl::PassTimer& timer) override {
+           const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
     lit_.run(buffers, maps, false, timer);
     cells_.run(buffers, timer);
     bounce_report_ = pulse_.run(lit_.voxels(), cells_.normal_occupancy(), cells_.albedo(), lit_.flux().punctual(),

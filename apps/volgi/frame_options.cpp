@@ -71,6 +71,7 @@ screen::GiMode gi_mode(const std::string& name) {
   if (name == "none") return GiMode::none;
   if (name == "vpl") return GiMode::vpl;
   if (name == "val") return GiMode::val;
+  if (name == "hybrid") return GiMode::hybrid;
   return name == "negative" ? GiMode::negative : GiMode::volume;
 }
 
@@ -78,7 +79,7 @@ screen::GiMode gi_mode(const std::string& name) {
 
 void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--gi", gi, "technique; lpv is volume --scheme lpv2009")
-      ->check(CLI::IsMember({"none", "lpv", "volume", "vpl", "negative", "val"}))
+      ->check(CLI::IsMember({"none", "lpv", "volume", "vpl", "negative", "val", "hybrid"}))
       ->capture_default_str();
   command.add_option("--light", light, "light shown; direct: straight from any emitter, indirect: after a reflection")
       ->check(CLI::IsMember({"full", "direct", "indirect"}))

@@ -12,6 +12,9 @@ uniform vec4 viewer;  // position and 1, or the direction towards an orthographi
 uniform vec3 view_axis;
 uniform float pixel_m2;  // area of a pixel on the plane at distance 1; of an orthographic camera everywhere
 
+// What lies in one plane with a light is not behind it, however normals and depths are rounded.
+#define LEAST_COSINE (4.0 * OCTAHEDRAL_ERROR_RAD)
+
 struct PassedLight {
   vec3 irradiance;  // on the surface's back [W m^-2]
   vec3 direction;   // sum of directions that the light travels in, weighted by luminance
@@ -23,12 +26,14 @@ void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight s
   VirtualLight l = lights[light];
   vec3 way = position - l.position;
   float squared = dot(way, way);
+  float distance = sqrt(squared);
   // The cosine at the surface is the negated one: light arrives from behind.
-  float cosines = max(dot(way, normal), 0.0) * max(dot(way, l.normal), 0.0);
-  if (cosines <= 0.0) return;
-  vec3 irradiance = l.flux * (cosines / (squared * (3.14159265358979 * squared + l.area_m2)));
+  float cosine_here = dot(way, normal), cosine_there = dot(way, l.normal);
+  if (min(cosine_here, cosine_there) <= LEAST_COSINE * distance) return;
+  vec3 irradiance =
+      l.flux * (cosine_here * cosine_there / (squared * (3.14159265358979 * squared + l.area_m2)));
   sum.irradiance += irradiance;
-  sum.direction += luminance(irradiance) * way * inversesqrt(squared);
+  sum.direction += luminance(irradiance) * way / distance;
 }
 
 // Area of the surface in a pixel [m^2]; an oblique one counts as at 87 degrees at most, as virtual lights do.
