@@ -36,7 +36,7 @@ struct FrameOptions {
   NegativeLightOptions negative_lights;
   GatherOptions gather;
   VirtualAreaLightOptions area_lights;
-  AreaLightShadow::Method area_light_shadow = AreaLightShadow::Method::percentage_closer;
+  AreaLightShadow::Method area_light_shadow = AreaLightShadow::Method::single;
   int area_light_map = 256;  // texels on each side of an area light's map
   AreaLightGatherOptions area_light_gather;
 };

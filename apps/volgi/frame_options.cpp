@@ -56,11 +56,11 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.gather.contrast = float(v); }},
     {"gather.distance", "virtual lights: the same for a part of the scene's diagonal (0.05)", 0, 1,
      [](Options& o, double v) { o.gather.distance = float(v); }},
-    {"val.shadow", "val: 0 convolution soft shadow maps, 1 percentage-closer, 2 one comparison (1)", 0, 2,
+    {"val.shadow", "val, hybrid: 0 convolution soft shadow maps, 1 percentage-closer, 2 one comparison (2)", 0, 2,
      [](Options& o, double v) { o.area_light_shadow = screen::AreaLightShadow::Method(int(v)); }},
-    {"val.map", "val: texels on a side of an area light's map (256)", 16, 4096,
+    {"val.map", "val, hybrid: texels on a side of an area light's map (256)", 16, 4096,
      [](Options& o, double v) { o.area_light_map = int(v); }},
-    {"val.interleave", "val: pixels of blocks of n x n share the lights: 1, 2, 4 or 8 (8)", 1, 8,
+    {"val.interleave", "val, hybrid: pixels of blocks of n x n share the lights: 1, 2, 4 or 8 (8)", 1, 8,
      [](Options& o, double v) { o.area_light_gather.interleave = int(v); }},
     {"gaitatzes.half_albedo", "gaitatzes2010: 1 takes 0.5 for every albedo after the first bounce (0)", 0, 1,
      [](Options& o, double v) { o.volume.scheme.constant_albedo = v != 0.0; }},
@@ -93,7 +93,9 @@ void FrameCommandOptions::add_to(CLI::App& command) {
       ->capture_default_str();
   command.add_option("--vpls-per-light", vpls_per_light, "as many for each light instead (emitters count as one)")
       ->check(CLI::Range(1, screen::VirtualLightOptions::kMost));
-  command.add_option("--vals", vals, "val: virtual area lights, clusters of virtual point lights that share a shadow")
+  command
+      .add_option("--vals", vals,
+                  "val, hybrid: virtual area lights, clusters of virtual point lights that share a shadow")
       ->check(CLI::Range(1, VIRTUAL_AREA_LIGHTS_MOST))
       ->capture_default_str();
   command.add_option("--set", parameters, parameter_help(std::span<const Parameter<Options>>(kParameters)));

@@ -88,10 +88,34 @@ if [[ -n $gl ]]; then
   refuse 2 grid.shift render "$scene" -o out.exr --set grid.shift
   refuse 2 "device 99" render "$scene" -o out.exr --device 99
   refuse 6 none/ render "$scene" -o out.exr --size 8x8 --stats none/stats.json
+  for number in 0 -1 65537 many 1.5; do
+    refuse 2 --vpls render "$scene" -o out.exr --gi vpl "--vpls=$number"
+    refuse 2 --vpls-per-light render "$scene" -o out.exr --gi negative "--vpls-per-light=$number"
+  done
+  for parameter in vpl.one_of=0 vpl.flux=2 negative.count=0 negative.count=1025 negative.method=3 gather.stride=0 \
+    gather.stride=17 gather.contrast=-1 gather.distance=2; do
+    refuse 2 "$parameter" render "$scene" -o out.exr --gi negative --set "$parameter"
+  done
+  refuse 6 text.glb/dump render "$scene" -o out.exr --size 8x8 --gi vpl --dump text.glb/dump
 fi
 refuse 2 "'magic'" magic
 refuse 3 missing.exr compare missing.exr missing.exr
 refuse 3 text.glb compare text.glb text.glb
+
+# What vpl and negative dump, the reference gathers again.
+if [[ -n $gl ]]; then
+  for gi in vpl negative; do
+    if ! { "$volgi" render "$scene" -o "$logs/$gi.exr" --size 8x8 --gi "$gi" --vpls 64 --grid 8 --quiet \
+      --dump "$logs/$gi" &&
+      grep -qF '"kind"' "$logs/$gi/virtual_lights.json" &&
+      "$volgi" reference "$scene" -o "$logs/$gi.ref.exr" --size 8x8 --vpls "$logs/$gi/virtual_lights.json"; } \
+      > "$logs/out" 2>&1; then
+      failures=$((failures + 1))
+      printf -- '--gi %s --dump:\n' "$gi"
+      sed 's/^/  | /' "$logs/out"
+    fi
+  done
+fi
 
 ((failures == 0)) || printf '%d commands did not fail as they should\n' "$failures"
 exit $((failures > 0))

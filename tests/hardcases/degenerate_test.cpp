@@ -1,29 +1,19 @@
 // Scenes that lack something, or have too much of it: the same image, a black one, or a clear error.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 
 #include "core/error.h"
 #include "reference/path_tracer.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/invariance.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
 namespace {
 
 const std::filesystem::path kData = std::filesystem::path(VOLGI_SOURCE_DIR) / "data";
-
-double mean(const Image& image) {
-  double sum = 0.0;
-  for (const glm::vec3& p : image.pixels) {
-    EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z));
-    EXPECT_TRUE(glm::all(glm::greaterThanEqual(p, glm::vec3(0.0f))));
-    sum += double(p.x + p.y + p.z) / 3.0;
-  }
-  return sum / double(image.pixels.size());
-}
 
 class Degenerate : public GlTest {
  protected:
@@ -38,19 +28,19 @@ class Degenerate : public GlTest {
   }
 };
 
-TEST_F(Degenerate, NothingAtAll) { EXPECT_EQ(mean(framed(Scene{})), 0.0); }
+TEST_F(Degenerate, NothingAtAll) { EXPECT_EQ(mean_light(framed(Scene{})), 0.0); }
 
 TEST_F(Degenerate, LightsWithoutTriangles) {
   Scene scene;
   scene.lights.push_back(point_light(glm::vec3(1.0f), glm::vec3(5.0f)));
   scene.lights.push_back(sun_light({0.0f, -1.0f, 0.0f}, glm::vec3(5.0f)));
-  EXPECT_EQ(mean(framed(scene)), 0.0);
+  EXPECT_EQ(mean_light(framed(scene)), 0.0);
 }
 
 TEST_F(Degenerate, NoLights) {
   Scene scene = load_scene(kData / "cornell.glb");
   scene.lights.clear();
-  EXPECT_EQ(mean(render(context(), scene, scene.cameras.at(0), options()).image), 0.0);
+  EXPECT_EQ(mean_light(render(context(), scene, scene.cameras.at(0), options()).image), 0.0);
 }
 
 TEST_F(Degenerate, OneTriangle) {
@@ -61,9 +51,9 @@ TEST_F(Degenerate, OneTriangle) {
     scene.lights.push_back(point_light({0.0f, 0.5f, 2.0f}, glm::vec3(3.0f)));
     screen::FrameOptions o = options();
     o.volume.scheme.scheme = scheme;
-    EXPECT_GT(mean(framed(scene, o)), 0.0);
+    EXPECT_GT(mean_light(framed(scene, o)), 0.0);
     o.light = screen::LightPart::indirect;
-    EXPECT_LT(mean(framed(scene, o)), 1e-3);  // a plane does not light itself
+    EXPECT_LT(mean_light(framed(scene, o)), 1e-3);  // a plane does not light itself
   }
 }
 
@@ -76,12 +66,12 @@ TEST_F(Degenerate, GridsOneCellThick) {
     v[(axis + 2) % 3] = 2.0f;
     add_quad(scene, add_material(scene, glm::vec3(0.8f)), -0.5f * (u + v), u, v);
     scene.lights.push_back(point_light(glm::normalize(glm::cross(u, v)), glm::vec3(3.0f)));
-    EXPECT_GT(mean(framed(scene)), 0.0);
+    EXPECT_GT(mean_light(framed(scene)), 0.0);
   }
   Scene rod;  // 100 : 1 : 1
   add_box_inside(rod, add_material(rod, glm::vec3(0.7f)), glm::vec3(0.0f), {10.0f, 0.1f, 0.1f});
   rod.lights.push_back(point_light(glm::vec3(0.0f), glm::vec3(0.1f)));
-  mean(framed(rod));
+  mean_light(framed(rod));
 }
 
 TEST_F(Degenerate, TrianglesWithoutArea) {
@@ -92,7 +82,7 @@ TEST_F(Degenerate, TrianglesWithoutArea) {
     mesh.triangles.push_back({t.x, t.x, t.y});
     mesh.triangles.push_back({t.z, t.z, t.z});
   }
-  EXPECT_NEAR(mean(render(context(), scene, scene.cameras.at(0), options()).image) / mean(ref), 1.0, 1e-3);
+  EXPECT_NEAR(mean_light(render(context(), scene, scene.cameras.at(0), options()).image) / mean_light(ref), 1.0, 1e-3);
 }
 
 // Every triangle twice. Sides then count its area twice and absorb too much: 0.797 of the light is left, where it
@@ -120,7 +110,7 @@ TEST_F(Degenerate, SheetOnAWall) {
         look_at_camera({0.6f, 0.5f, 0.9f}, {-0.3f, -0.4f, -0.6f}, 1.2f, scene.bounds_min, scene.bounds_max);
     screen::FrameOptions o = options();
     o.light = screen::LightPart::indirect;
-    return mean(render(context(), scene, camera, o).image);
+    return mean_light(render(context(), scene, camera, o).image);
   };
   EXPECT_NEAR(picture(true) / picture(false), 1.0, 0.03);
 }
@@ -141,15 +131,15 @@ TEST_F(Degenerate, EmissiveSceneAgainstPaths) {
   PathTracerOptions tracer;
   tracer.size = {64, 64};
   tracer.samples_per_pixel = 64;
-  const double exact = mean(path_trace(scene, scene.cameras.at(0), tracer).color);
+  const double exact = mean_light(path_trace(scene, scene.cameras.at(0), tracer).color);
   screen::FrameOptions o = options();
   o.volume.grid_cells = 24;
-  const double energy = mean(render(context(), scene, scene.cameras.at(0), o).image) / exact;
+  const double energy = mean_light(render(context(), scene, scene.cameras.at(0), o).image) / exact;
   EXPECT_NEAR(energy, 1.0, 0.25);
   RecordProperty("energy", std::to_string(energy));
   for (screen::LightPart part : {screen::LightPart::direct, screen::LightPart::indirect}) {
     o.light = part;
-    EXPECT_GT(mean(render(context(), scene, scene.cameras.at(0), o).image), 0.0);
+    EXPECT_GT(mean_light(render(context(), scene, scene.cameras.at(0), o).image), 0.0);
   }
 }
 
