@@ -13,7 +13,7 @@ struct GatherOptions {
   int stride = 2;  // every stride-th pixel in both directions first, the others only where they differ; 1: all
   /// A pixel differs when its normal, or the way to a coarse pixel off its tangent plane, turns by more than this.
   float threshold_rad = 0.2f;
-  float contrast = 0.25f;  // or when coarse irradiances around it do by more than this part of the largest
+  float contrast = 0.15f;  // or when coarse irradiances around it do by more than this part of the largest
   float distance = 0.05f;  // or when it is farther than this part of the scene's diagonal away from them
 };
 

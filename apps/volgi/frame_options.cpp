@@ -40,7 +40,7 @@ constexpr Parameter<Options> kParameters[] = {
      "vpl, negative: one virtual light of so many candidates, by what they send to the picture; 1 takes the paper's "
      "own "
      "samples (16)",
-     1, 64, [](Options& o, double v) { o.choose_one_of = int(v); }},
+     1, 32, [](Options& o, double v) { o.choose_one_of = int(v); }},
     {"negative.count", "negative: number of negative lights (256)", 1, NEGATIVE_LIGHTS_MOST,
      [](Options& o, double v) { o.negative_lights.count = int(v); }},
     {"negative.method",
@@ -52,7 +52,7 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.gather.stride = int(v); }},
     {"gather.discontinuity", "virtual lights: turn of normal or surface that a pixel is gathered again for [rad] (0.2)",
      0, 10, [](Options& o, double v) { o.gather.threshold_rad = float(v); }},
-    {"gather.contrast", "virtual lights: the same for a part of the irradiance (0.25)", 0, 1,
+    {"gather.contrast", "virtual lights: the same for a part of the irradiance (0.15)", 0, 1,
      [](Options& o, double v) { o.gather.contrast = float(v); }},
     {"gather.distance", "virtual lights: the same for a part of the scene's diagonal (0.05)", 0, 1,
      [](Options& o, double v) { o.gather.distance = float(v); }},
