@@ -10,6 +10,10 @@ namespace {
 using Method = NegativeLightOptions::Method;
 constexpr size_t kPixelCandidates = 64 * 64;  // CANDIDATES_X, _Y of shaders/screen/negative_candidates.glsl
 
+void reserve(gl::Buffer& buffer, size_t bytes) {
+  if (buffer.id() == 0 || buffer.bytes() < bytes) buffer = gl::Buffer(bytes);
+}
+
 /// Turns that light may have to take on its way into the last corner: three axes a round. What it does not find counts
 /// as closed, and loses negative lights there.
 constexpr int kSpreadRounds = 6;
@@ -39,6 +43,9 @@ NegativeLights::NegativeLights(const NegativeLightOptions& options)
   if (options_.method != Method::sides) return;
   seed_ = gl::Program::compute("screen/open_cells_seed.comp.glsl");
   spread_ = gl::Program::compute("screen/open_cells_spread.comp.glsl");
+  count_ = gl::Program::compute("screen/sides_by_block_count.comp.glsl");
+  scan_ = gl::Program::compute("screen/sides_by_block_scan.comp.glsl");
+  list_ = gl::Program::compute("screen/sides_by_block_list.comp.glsl");
 }
 
 void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights,
@@ -49,7 +56,11 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
   gbuffer.normals().bind(1);
   lights.buffer.bind_storage(0);
   lights_.bind_storage(1);
-  if (voxels != nullptr) find_open_cells(*voxels, lights.reflected);
+  if (voxels != nullptr) {
+    voxels->bind();
+    order_sides(*voxels);
+    find_open_cells(*voxels, lights.reflected);
+  }
   for (const gl::Program* program : {&weigh_, &place_}) {
     if (program->id() == 0) continue;
     program->set("light_count", lights.reflected);
@@ -62,8 +73,25 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
   glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+void NegativeLights::order_sides(const VoxelGridGl& voxels) {
+  constexpr int kBlockEdge = 8;  // of shaders/screen/sides_by_block.glsl
+  const glm::ivec3 edge = (voxels.grid.cells + kBlockEdge - 1) / kBlockEdge;
+  const int blocks = edge.x * edge.y * edge.z;
+  reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
+  reserve(block_starts_, size_t(blocks) * sizeof(GLuint));
+  sides_by_block_.bind_storage(7);
+  block_starts_.bind_storage(2);
+  const auto run = [](const gl::Program& program, int threads) {
+    program.use();
+    gl::dispatch({threads, 1, 1}, {64, 1, 1});
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  };
+  run(count_, blocks);
+  run(scan_, 1);
+  run(list_, blocks);
+}
+
 void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count) {
-  voxels.bind();
   const size_t bytes = cell_count(voxels.grid) * sizeof(GLuint);
   if (open_cells_.bytes() != bytes) open_cells_ = gl::Buffer(bytes);
   open_cells_.clear();
@@ -85,8 +113,7 @@ void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count)
 
 void NegativeLights::choose(const VoxelGridGl* voxels) {
   const size_t candidates = voxels != nullptr ? voxels->side_capacity : kPixelCandidates;
-  if (weights_.id() == 0 || weights_.bytes() < candidates * sizeof(float))
-    weights_ = gl::Buffer(std::max(candidates, size_t(1)) * sizeof(float));
+  reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
   weights_.bind_storage(2);
   weigh_.use();
   gl::dispatch({int(candidates), 1, 1}, {64, 1, 1});

@@ -38,17 +38,20 @@ class NegativeLights {
   int count() const { return options_.count; }
   /// Waits for the GPU; after a frame, not in one.
   std::vector<shared::NegativeLight> download() const;
-  size_t bytes() const { return lights_.bytes() + weights_.bytes() + open_cells_.bytes(); }
+  size_t bytes() const {
+    return lights_.bytes() + weights_.bytes() + open_cells_.bytes() + sides_by_block_.bytes() + block_starts_.bytes();
+  }
 
  private:
+  void order_sides(const VoxelGridGl& voxels);
   void find_open_cells(const VoxelGridGl& voxels, int light_count);
   void choose(const VoxelGridGl* voxels);
 
   NegativeLightOptions options_;
   gl::Buffer lights_;
-  gl::Buffer weights_;     // of candidates (shaders/screen/negative_candidates.glsl)
-  gl::Buffer open_cells_;  // of Method::sides
-  gl::Program place_, weigh_, sum_, seed_, spread_;
+  gl::Buffer weights_;                                     // of candidates (shaders/screen/negative_candidates.glsl)
+  gl::Buffer open_cells_, sides_by_block_, block_starts_;  // of Method::sides
+  gl::Program place_, weigh_, sum_, seed_, spread_, count_, scan_, list_;
 };
 
 }  // namespace volgi::screen

@@ -6,7 +6,7 @@
 layout(std430, binding = 2) buffer Weights { float weights[]; };  // flux [W]; then summed from the first on
 
 #ifdef SIDES
-#include "screen/open_cells.glsl"
+#include "screen/sides_by_block.glsl"
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 

@@ -20,7 +20,7 @@ ExitSurface exit_surface_of_pixel(ivec2 pixel, float pixels) {
 #ifdef SIDES
 // Light leaves bodies where it can go on: at sides of open cells.
 ExitSurface exit_surface(int candidate) {
-  Side side = sides[candidate];
+  Side side = sides[sides_by_block[candidate]];
   ivec3 cell = cell_coord(grid, side.cell);
   vec3 at = vec3(cell) + 0.5;
   at[side.face >> 1] = side.depth;

@@ -209,7 +209,6 @@ TEST_F(FirstBounce, VirtualLightsAgainstTheReferenceGather) {
       record(key, error);
       record(key + "_with_edges", rmse_percent(frame.image, reference.color));
       record(key + "_coarse_share", frame.report.coarse_share);
-      // Where a virtual light lies close to a corner, its spot may fall between coarse pixels: room does not reach 1.
       EXPECT_LT(error, stride == 1 ? 0.1 : 1.0) << key;
     }
   }
@@ -310,7 +309,7 @@ TEST_F(FirstBounce, Flicker) {
   }
   gl::PassTimer timer(context().software(), false);
   Flicker of_mode[2], of_exact;
-  for (int k = 0; k <= 20; ++k) {
+  for (int k = 0; k <= 20; ++k) {  // of 200; docs/results/first-bounce.md has all of them
     for (int m = 0; m < 2; ++m) {
       frames[m]->render(scene.cameras.at(0), timer);
       of_mode[m].add(screen::image_from_texture(frames[m]->radiance()));
@@ -324,9 +323,7 @@ TEST_F(FirstBounce, Flicker) {
     record("flicker_" + name_of(kModes[m]) + "_median", of_mode[m].median());
     record("flicker_" + name_of(kModes[m]) + "_largest", of_mode[m].largest());
     EXPECT_LT(of_mode[m].median(), 1.5 * of_exact.median()) << name_of(kModes[m]);
-    // Missed by a tenth on voxels of the GPU, whose list of sides follows rows of cells and not blocks: 1.61 times.
-    const bool missed = kModes[m] == GiMode::negative && tested_backend() == screen::Backend::gpu;
-    EXPECT_LT(of_mode[m].largest(), (missed ? 1.75 : 1.5) * of_exact.largest()) << name_of(kModes[m]);
+    EXPECT_LT(of_mode[m].largest(), 1.5 * of_exact.largest()) << name_of(kModes[m]);
   }
 }
 
