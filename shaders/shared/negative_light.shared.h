@@ -10,8 +10,8 @@ SHARED_BEGIN
 // std140 and std430, 48 bytes. Irradiance to subtract at x: flux * (exponent + 1) / 2 * cos_x * cos_l^exponent /
 // (pi d^2 + area); exponent 1 is a virtual light's.
 struct NegativeLight {
-  vec3 position;  // centred frame
-  float area_m2;  // of the visible surface that the light stands for
+  vec3 position;   // centred frame
+  float area_m2;   // of the visible surface that the light stands for
   vec3 direction;  // unit, mean direction in which the stopped light would travel on
   float exponent;  // of the lobe around it, >= 1
   vec3 flux;       // power to take away [W], >= 0

@@ -12,11 +12,11 @@ const float SH_SQRT15 = 3.8729833f;
 const float SH_HALF_SQRT3 = 0.86602540f;
 
 // `conservative` (docs/theory.md#conservative). Lobes cut at the pyramids over a cell's faces ring. Cells are taken as
-// holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half sphere, which is
-// smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a lobe I stands for
-// the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so that int s Y_i is
-// kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no cross terms, by
-// the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z are:
+// holding radiance instead, and what leaves through a face is its exact flux there, |d_a| over the half sphere, which
+// is smooth. A cell of edge h shows h^2 s to direction d, s = |d_x|+|d_y|+|d_z|, the mean of s is 3/2: a lobe I stands
+// for the radiance L h^2 = 2/3 I, of power int s L h^2 = its first number. What comes in is projected so that int s Y_i
+// is kept: divided by (1/4 pi) int s Y_i^2 = 3/2 (bands 0 and 1), 25/16 (xy, yz, xz), 45/32 (20, 22); no cross terms,
+// by the cube's symmetry. With (1/4 pi) int_{z>0} z Y_i Y_j all elements of the transfer through face +z are:
 //          00          10            20                            11        21 (xz)               22       2-2 (xy)
 //   00     1/6         sqrt3/9       sqrt5/24               11     1/8       sqrt5/15       22     1/9
 //   10     sqrt3/9     1/4           2 sqrt15/45            21     8sqrt5/125  1/5          2-2              1/10

@@ -4,18 +4,18 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-#define VIRTUAL_AREA_LIGHTS_MOST 1024  // one uniform block
+#define VIRTUAL_AREA_LIGHTS_MOST 1024      // one uniform block
 #define NO_VIRTUAL_AREA_LIGHT 0xffffffffu  // cluster of a virtual light without flux
 
 // std140 and std430, 64 bytes. A cluster without lights has light_count 0; its other members are of no use.
 struct VirtualAreaLight {
-  vec3 position;   // where its lights are seen from, centred frame
-  float area_m2;   // bounding rectangle on the plane of the mean normal, at least the sum of its lights' areas
-  vec3 normal;     // unit, mean; the axis of its paraboloid map
-  float size_m;    // Delta of the paper: edge of the square of area_m2
-  vec3 right;      // unit, across the normal; up = cross(normal, right)
+  vec3 position;  // where its lights are seen from, centred frame
+  float area_m2;  // bounding rectangle on the plane of the mean normal, at least the sum of its lights' areas
+  vec3 normal;    // unit, mean; the axis of its paraboloid map
+  float size_m;   // Delta of the paper: edge of the square of area_m2
+  vec3 right;     // unit, across the normal; up = cross(normal, right)
   int light_count;
-  vec3 flux;       // sum over its lights [W]
+  vec3 flux;        // sum over its lights [W]
   int first_light;  // its lights are order[first_light, first_light + light_count)
 };
 #ifdef __cplusplus

@@ -14,12 +14,12 @@ SHARED_BEGIN
 // std140 and std430, 48 bytes. Irradiance at x with unit normal n:
 // flux * cos_x * cos_l / (pi d^2 + area), cos_x = n.w, cos_l = -normal.w, w from x to the light.
 struct VirtualLight {
-  vec3 position;   // centred frame
-  float area_m2;   // of the surface that the light stands for
-  vec3 normal;     // unit, geometric, on the side that the light leaves
-  int kind;        // VIRTUAL_LIGHT_*
-  vec3 flux;       // power leaving [W], >= 0; 0 where a sample met nothing
-  int source;      // index of the punctual light, -1 for emissive surfaces
+  vec3 position;  // centred frame
+  float area_m2;  // of the surface that the light stands for
+  vec3 normal;    // unit, geometric, on the side that the light leaves
+  int kind;       // VIRTUAL_LIGHT_*
+  vec3 flux;      // power leaving [W], >= 0; 0 where a sample met nothing
+  int source;     // index of the punctual light, -1 for emissive surfaces
 };
 #ifdef __cplusplus
 static_assert(sizeof(VirtualLight) == 48 && offsetof(VirtualLight, normal) == 16 && offsetof(VirtualLight, flux) == 32);
