@@ -71,9 +71,10 @@ Start start_of(const VoxelGrid& voxels, const EmbreeScene& embree, const Side& s
   if (meets(embree, side, depth, h, centre, start)) return start;
   const int axis_b = shared::axis_b(axis), axis_c = shared::axis_c(axis);
   for (int k : {1, 3, 5, 7, 0, 2, 6, 8}) {
+    const int column = k % 3 - 1, row = k / 3 - 1;
     glm::vec3 middle = centre;
-    middle[axis_b] += float(k % 3 - 1) * h / 3.0f;
-    middle[axis_c] += float(k / 3 - 1) * h / 3.0f;
+    middle[axis_b] += float(column) * h / 3.0f;
+    middle[axis_c] += float(row) * h / 3.0f;
     glm::vec3 corner_b = centre, corner_c = centre;
     corner_b[axis_b] = middle[axis_b];
     corner_c[axis_c] = middle[axis_c];
