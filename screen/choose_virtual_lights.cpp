@@ -11,10 +11,6 @@ namespace {
 
 constexpr int kReceivers = 256;  // of shaders/screen/light_candidates.glsl, two vec4 each
 
-void reserve(gl::Buffer& buffer, size_t bytes) {
-  if (buffer.id() == 0 || buffer.bytes() < bytes) buffer = gl::Buffer(bytes);
-}
-
 }  // namespace
 
 ChooseVirtualLights::ChooseVirtualLights(int one_of)
@@ -33,7 +29,7 @@ void ChooseVirtualLights::make_room(const VirtualLightListGl& candidates) {
   const size_t bytes = padded_count(lights_) * sizeof(shared::VirtualLight);
   if (lights_.buffer.bytes() != bytes) lights_.buffer = gl::Buffer(bytes);
   lights_.buffer.clear();
-  reserve(weights_, size_t(std::max(candidates.count(), 1)) * 2 * sizeof(float));
+  gl::reserve(weights_, size_t(std::max(candidates.count(), 1)) * 2 * sizeof(float));
 }
 
 void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer) {

@@ -9,10 +9,11 @@ namespace volgi::screen {
 
 /// Pass "screen/choose_virtual_lights": of many candidates the ones that matter to the picture. A candidate's weight is
 /// the light that it sends, without visibility, to 256 pixels of a Halton sequence, and kFluxShare of all weight goes
-/// by flux alone, so that nothing that carries light is left out. Each source keeps its number of lights, chosen by
-/// systematic resampling (equal steps through the summed weights): a light chosen with probability p carries 1/p of
-/// its flux and area, and any sum over lights keeps its mean. Lights that face out of the scene, such as the sun's on
-/// a roof over the room that is seen, all but vanish. Cost: candidates times 256. Depends on the camera.
+/// by flux alone: nothing that carries light is left out, and no light carries more than 1 / kFluxShare of an even
+/// share. Each source keeps its number of lights, chosen by systematic resampling (equal steps through the summed
+/// weights): a light chosen with probability p carries 1/p of its flux and area, and any sum over lights keeps its
+/// mean. Lights that face out of the scene, such as the sun's on a roof over the room that is seen, all but vanish.
+/// Cost: candidates times 256. Depends on the camera.
 class ChooseVirtualLights {
  public:
   static constexpr const char* name = "screen/choose_virtual_lights";

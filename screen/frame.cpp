@@ -48,7 +48,7 @@ void warn_of_missing_light(const Scene& scene, const FrameOptions& options, cons
     warn_once(scene.name + ": emissive surfaces are seen but light nothing with --gi none");
   } else if (budget.higher_bounces == BounceBudget::Carrier::nobody && !direct_only(options)) {
     warn_once(scene.name +
-              ": light of emissive surfaces is not reflected with --gi vpl, negative and val; take volume");
+              ": light of emissive surfaces is not reflected with --gi vpl, negative and val; take hybrid or volume");
   }
 }
 
@@ -72,6 +72,7 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
     if (!carries_sides(options_.volume.scheme.scheme))
       throw Error(ExitCode::usage, "--gi hybrid needs a scheme that carries orders: ordinates or conservative");
     options_.volume.source = VolumeOptions::Source::first_bounce;
+    options_.volume.virtual_lights = options_.virtual_lights.count;
   }
   if (needs_volume(scene, options_)) {
     volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)

@@ -10,10 +10,6 @@ namespace {
 using Method = NegativeLightOptions::Method;
 constexpr size_t kPixelCandidates = 64 * 64;  // CANDIDATES_X, _Y of shaders/screen/negative_candidates.glsl
 
-void reserve(gl::Buffer& buffer, size_t bytes) {
-  if (buffer.id() == 0 || buffer.bytes() < bytes) buffer = gl::Buffer(bytes);
-}
-
 /// Turns that light may have to take on its way into the last corner: three axes a round. What it does not find counts
 /// as closed, and loses negative lights there.
 constexpr int kSpreadRounds = 6;
@@ -77,8 +73,8 @@ void NegativeLights::order_sides(const VoxelGridGl& voxels) {
   constexpr int kBlockEdge = 8;  // of shaders/screen/sides_by_block.glsl
   const glm::ivec3 edge = (voxels.grid.cells + kBlockEdge - 1) / kBlockEdge;
   const int blocks = edge.x * edge.y * edge.z;
-  reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
-  reserve(block_starts_, size_t(blocks) * sizeof(GLuint));
+  gl::reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
+  gl::reserve(block_starts_, size_t(blocks) * sizeof(GLuint));
   sides_by_block_.bind_storage(7);
   block_starts_.bind_storage(2);
   const auto run = [](const gl::Program& program, int threads) {
@@ -113,7 +109,7 @@ void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count)
 
 void NegativeLights::choose(const VoxelGridGl* voxels) {
   const size_t candidates = voxels != nullptr ? voxels->side_capacity : kPixelCandidates;
-  reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
+  gl::reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
   weights_.bind_storage(2);
   weigh_.use();
   gl::dispatch({int(candidates), 1, 1}, {64, 1, 1});

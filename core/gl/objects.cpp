@@ -102,6 +102,10 @@ Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags) : bytes_(std::m
 void Buffer::bind_storage(GLuint binding) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id()); }
 void Buffer::bind_uniform(GLuint binding) const { glBindBufferBase(GL_UNIFORM_BUFFER, binding, id()); }
 
+void reserve(Buffer& buffer, size_t bytes) {
+  if (buffer.id() == 0 || buffer.bytes() < bytes) buffer = Buffer(bytes);
+}
+
 void Buffer::clear() const { glClearNamedBufferData(id(), GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr); }
 
 void Buffer::upload(const void* data, size_t bytes, size_t offset) const {

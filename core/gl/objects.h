@@ -74,6 +74,9 @@ class Buffer {
   size_t bytes_ = 0;
 };
 
+/// Room for `bytes`: a new buffer where there is none as large. What was in it is lost then.
+void reserve(Buffer& buffer, size_t bytes);
+
 /// Immutable texture storage, nearest filtering and clamped to the edge until told otherwise.
 /// @throws Error(over_limit) when the GPU's texture limits or memory do not allow the size.
 class Texture {

@@ -1,5 +1,6 @@
 #version 450 core
 // What each candidate sends to the receivers, without visibility.
+#include "shared/luminance.glsl"
 #include "screen/light_candidates.glsl"
 
 layout(local_size_x = 64) in;
@@ -8,7 +9,7 @@ void main() {
   int i = int(gl_GlobalInvocationID.x);
   if (i >= candidate_count) return;
   VirtualLight l = candidate_lights[first_candidate + i];
-  float flux = dot(l.flux, vec3(0.2126, 0.7152, 0.0722));
+  float flux = luminance(l.flux);
   float sum = 0.0;
   if (flux > 0.0) {
     for (int k = 0; k < RECEIVERS; ++k) {

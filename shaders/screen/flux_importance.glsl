@@ -3,8 +3,7 @@
 // not stored. Any resolution: blocks at the edge are smaller.
 #ifndef VOLGI_FLUX_IMPORTANCE_GLSL
 #define VOLGI_FLUX_IMPORTANCE_GLSL
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
+#include "shared/luminance.glsl"
 
 int level_size(int resolution, int level) {
   for (int k = 0; k < level; ++k) resolution = (resolution + 3) / 4;

@@ -1,6 +1,7 @@
 #version 450 core
 // Places negative lights, one to a work group. Cochran and Steele 2007, section 3.3.
 // PASSED_FLUX: on candidates, chosen by the flux that passes through them; else on pixels of a Halton sequence.
+#include "screen/halton_pixel.glsl"
 #include "screen/negative_surface.glsl"
 #ifdef SIDES
 #include "screen/first_passage.glsl"
@@ -14,26 +15,20 @@ uniform int negative_count;
 shared vec3 irradiance_part[64];
 shared vec3 direction_part[64];
 
-float radical_inverse_3(uint i) {
-  float sum = 0.0, digit = 1.0 / 3.0;
-  for (; i > 0u; i /= 3u, digit /= 3.0) sum += float(i % 3u) * digit;
-  return sum;
-}
-
 #ifdef PASSED_FLUX
-// A candidate chosen with probability p stands for 1 / (count p) of itself.
+// A candidate chosen with probability p stands for 1 / (count p) of itself. Sums that threads made apart may fall by a
+// rounding between two candidates: one met there has no weight of its own, and stands for nothing.
 ExitSurface chosen_surface(int k) {
   int candidate = candidate_at(total_weight() * (float(k) + 0.5) / float(negative_count));
   ExitSurface surface = exit_surface(candidate);
-  surface.area_m2 *= total_weight() / (float(negative_count) * weight_of(candidate));
+  float weight = weight_of(candidate);
+  surface.area_m2 *= weight > 0.0 ? total_weight() / (float(negative_count) * weight) : 0.0;
   return surface;
 }
 #else
 ExitSurface chosen_surface(int k) {
-  vec2 halton = vec2(float(bitfieldReverse(uint(k + 1))) / 4294967296.0, radical_inverse_3(uint(k + 1)));
   ivec2 size = textureSize(position_map, 0);
-  ivec2 pixel = min(ivec2(halton * vec2(size)), size - 1);
-  return exit_surface_of_pixel(pixel, float(size.x) * float(size.y) / float(negative_count));
+  return exit_surface_of_pixel(halton_pixel(uint(k), size), float(size.x) * float(size.y) / float(negative_count));
 }
 #endif
 
@@ -45,7 +40,8 @@ bool enters_first(ExitSurface surface, int light) {
 }
 #endif
 
-// Exponent of a lobe cos^e whose mean direction is as long as that of the light: (e + 1) / (e + 2) = length.
+// Exponent of a lobe cos^e whose mean direction is as long as that of the light: (e + 1) / (e + 2) = length. At most 998,
+// which is 1.8 degrees wide (1 / sqrt(e)): a single light's lobe would have no width.
 float lobe_exponent(float mean_length) {
   float r = min(mean_length, 0.999);
   return max((2.0 * r - 1.0) / (1.0 - r), 1.0);
@@ -79,12 +75,10 @@ void main() {
     return;
   }
 #ifdef PASSED_FLUX
-  float area = surface.area_m2;
   float exponent = lobe_exponent(length(sum.direction) / weight);
 #else
-  float area = surface.area_m2;
   float exponent = 1.0;
 #endif
-  negative_lights[k] =
-      NegativeLight(surface.position, area, normalize(sum.direction), exponent, sum.irradiance * area, 0.0);
+  negative_lights[k] = NegativeLight(surface.position, surface.area_m2, normalize(sum.direction), exponent,
+                                     sum.irradiance * surface.area_m2, 0.0);
 }

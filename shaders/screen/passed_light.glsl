@@ -1,6 +1,7 @@
 // Light that virtual lights send through a pixel's surface from behind: Cochran and Steele 2007, section 3.3.
 #ifndef VOLGI_PASSED_LIGHT_GLSL
 #define VOLGI_PASSED_LIGHT_GLSL
+#include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "shared/virtual_light.shared.h"
 
@@ -19,8 +20,6 @@ struct PassedLight {
   vec3 irradiance;  // on the surface's back [W m^-2]
   vec3 direction;   // sum of directions that the light travels in, weighted by luminance
 };
-
-float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
 void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight sum) {
   VirtualLight l = lights[light];

@@ -1,9 +1,11 @@
 #pragma once
 // Small scenes built in code for the tests of the volume.
+#include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <string>
 
 #include "core/scene.h"
 #include "shaders/shared/grid.shared.h"
@@ -135,6 +137,31 @@ inline Light sun_light(glm::vec3 direction, glm::vec3 irradiance) {
   light.type = Light::Type::directional;
   light.direction = glm::normalize(direction);
   return light;
+}
+
+/// Closed boxes of sides upright, turned and of every height against cells, for grids of 16 cells from -1 to 1.
+/// @param check  of (scene, a point inside, distance outside by position, what it is)
+template <typename Check>
+void for_closed_boxes(const Check& check) {
+  const glm::mat3 turns[] = {glm::mat3(1.0f), rotation({0, 1, 0}, 45.0f), rotation({1, 0, 0}, 45.0f),
+                             rotation({0, 0, 1}, 30.0f),
+                             rotation({0, 1, 0}, 30.0f) * rotation({1, 0, 0}, 20.0f) * rotation({0, 0, 1}, 10.0f)};
+  for (int t = 0; t < 5; ++t) {
+    const glm::mat3& turn = turns[t];
+    for (float half : {0.5f, 0.5625f, 0.51f, 0.4999f, 0.4375f}) {  // faces of cells, centres of cells, between
+      for (glm::vec3 offset : {glm::vec3(0.0f), glm::vec3(0.0625f), glm::vec3(0.013f, -0.027f, 0.04f)}) {
+        Scene scene;
+        add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), offset, glm::vec3(half), turn);
+        const auto outside = [&](glm::vec3 p) {
+          const glm::vec3 q = glm::abs(glm::transpose(turn) * (p - offset)) - half;
+          return std::max({q.x, q.y, q.z});
+        };
+        check(scene, offset, outside,
+              "turn " + std::to_string(t) + ", half edge " + std::to_string(half) + ", offset " +
+                  std::to_string(offset.x));
+      }
+    }
+  }
 }
 
 }  // namespace volgi::test

@@ -127,25 +127,10 @@ int escapes(const Voxels& v, glm::vec3 middle, const Outside& outside) {
 
 // Closed boxes have edges, and where walls go through cell centres so do the edges.
 TEST_F(Watertight, ClosedBoxes) {
-  const glm::mat3 turns[] = {glm::mat3(1.0f), rotation({0, 1, 0}, 45.0f), rotation({1, 0, 0}, 45.0f),
-                             rotation({0, 0, 1}, 30.0f),
-                             rotation({0, 1, 0}, 30.0f) * rotation({1, 0, 0}, 20.0f) * rotation({0, 0, 1}, 10.0f)};
   SlicedVoxelization voxelization(unit_grid(16));
-  for (int t = 0; t < 5; ++t) {
-    const glm::mat3& turn = turns[t];
-    for (float half : {0.5f, 0.5625f, 0.51f, 0.4999f, 0.4375f}) {  // faces of cells, centres of cells, between
-      for (glm::vec3 offset : {glm::vec3(0.0f), glm::vec3(0.0625f), glm::vec3(0.013f, -0.027f, 0.04f)}) {
-        Scene scene;
-        add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), offset, glm::vec3(half), turn);
-        const auto outside = [&](glm::vec3 p) {
-          const glm::vec3 q = glm::abs(glm::transpose(turn) * (p - offset)) - half;
-          return std::max({q.x, q.y, q.z});
-        };
-        EXPECT_EQ(escapes(blocked_faces(context(), voxelization, scene), offset, outside), 0)
-            << "turn " << t << ", half edge " << half << ", offset " << offset.x;
-      }
-    }
-  }
+  for_closed_boxes([&](const Scene& scene, glm::vec3 inside, const auto& outside, const std::string& what) {
+    EXPECT_EQ(escapes(blocked_faces(context(), voxelization, scene), inside, outside), 0) << what;
+  });
 }
 
 // Whatever the place and the turn: edges fall beside centres in every way.
