@@ -21,14 +21,8 @@ namespace {
 constexpr double farthest_m = 1e12;                  // squares and cubes of it are still floats
 constexpr size_t most_vertices = size_t(100) << 20;  // of all nodes together
 
-struct Box {
-  glm::dvec3 min{std::numeric_limits<double>::infinity()};
-  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
-  bool empty() const { return min.x > max.x; }
-};
-
-Box triangle_bounds(const std::vector<gltf::PlacedMesh>& meshes) {
-  Box box;
+WorldBox triangle_bounds(const std::vector<gltf::PlacedMesh>& meshes) {
+  WorldBox box;
   for (const gltf::PlacedMesh& placed : meshes) {
     for (const glm::uvec3& t : placed.mesh.triangles) {
       for (int c = 0; c < 3; ++c) {
@@ -54,6 +48,9 @@ struct SceneFile::Data {
   std::vector<Camera> cameras;
 
   explicit Data(const gltf::Document& document);
+  Scene still() const;
+  void place(Scene& scene, double time_s, const WorldBox* given_box) const;
+  std::vector<glm::dmat4> world_from_nodes_at(double time_s) const;
   std::vector<gltf::PlacedMesh> place_meshes(const std::vector<glm::dmat4>& world, size_t& dropped) const;
   void check_positions(const gltf::PlacedMesh& placed, const gltf::Node& node) const;
   void add_lights_and_cameras(const std::vector<glm::dmat4>& world, Scene& scene) const;
@@ -143,34 +140,66 @@ SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 
 bool SceneFile::animated() const { return !data_->channels.empty(); }
 
-Scene SceneFile::at(double time_s) const {
-  assert(std::isfinite(time_s));
+/// What does not move.
+Scene SceneFile::Data::still() const {
   Scene scene;
-  scene.path = data_->path;
-  scene.name = data_->path.stem().string();
-  scene.materials = data_->materials.materials;
-  scene.images = data_->materials.images;
-  scene.textures = data_->materials.textures;
+  scene.path = path;
+  scene.name = path.stem().string();
+  scene.materials = materials.materials;
+  scene.images = materials.images;
+  scene.textures = materials.textures;
+  return scene;
+}
 
-  std::vector<gltf::Node> nodes = data_->nodes;
-  gltf::animate(nodes, data_->channels, time_s);
-  const std::vector<glm::dmat4> world = gltf::world_from_nodes(data_->path, nodes, data_->order);
+std::vector<glm::dmat4> SceneFile::Data::world_from_nodes_at(double time_s) const {
+  assert(std::isfinite(time_s));
+  std::vector<gltf::Node> moved = nodes;
+  gltf::animate(moved, channels, time_s);
+  return gltf::world_from_nodes(path, moved, order);
+}
 
+/// Puts what moves into the scene: all but what still() makes.
+void SceneFile::Data::place(Scene& scene, double time_s, const WorldBox* given_box) const {
+  const std::vector<glm::dmat4> world = world_from_nodes_at(time_s);
   size_t dropped = 0;
-  std::vector<gltf::PlacedMesh> placed = data_->place_meshes(world, dropped);
-  const Box box = triangle_bounds(placed);
-  if (!box.empty()) scene.world_origin = 0.5 * (box.min + box.max);
+  std::vector<gltf::PlacedMesh> placed = place_meshes(world, dropped);
+  const WorldBox box = given_box != nullptr ? *given_box : triangle_bounds(placed);
+  scene.world_origin = box.empty() ? glm::dvec3(0.0) : box.centre();
+  scene.meshes.clear();
   for (gltf::PlacedMesh& mesh : placed) {
     Mesh done = gltf::centred(std::move(mesh), scene.world_origin, dropped);
     if (!done.triangles.empty()) scene.meshes.push_back(std::move(done));
   }
-  if (dropped > 0) gltf::warn(data_->path, fmt::format("{} triangles without area are left out", dropped));
+  if (dropped > 0) gltf::warn(path, fmt::format("{} triangles without area are left out", dropped));
   const size_t duplicates = drop_duplicate_triangles(scene);
-  if (duplicates > 0)
-    gltf::warn(data_->path, fmt::format("{} triangles lie exactly on others and are left out", duplicates));
+  if (duplicates > 0) gltf::warn(path, fmt::format("{} triangles lie exactly on others and are left out", duplicates));
   update_bounds(scene);
-  data_->add_lights_and_cameras(world, scene);
+  if (given_box != nullptr && !box.empty()) {
+    scene.bounds_min = glm::vec3(box.min - scene.world_origin);
+    scene.bounds_max = glm::vec3(box.max - scene.world_origin);
+  }
+  scene.lights.clear();
+  scene.cameras.clear();
+  add_lights_and_cameras(world, scene);
+}
+
+Scene SceneFile::at(double time_s) const {
+  Scene scene = data_->still();
+  data_->place(scene, time_s, nullptr);
   return scene;
+}
+
+Scene SceneFile::at(double time_s, const WorldBox& box) const {
+  Scene scene = data_->still();
+  data_->place(scene, time_s, &box);
+  return scene;
+}
+
+void SceneFile::move(Scene& scene, double time_s, const WorldBox& box) const { data_->place(scene, time_s, &box); }
+
+WorldBox SceneFile::bounds(double time_s) const {
+  size_t dropped = 0;
+  return triangle_bounds(data_->place_meshes(data_->world_from_nodes_at(time_s), dropped));
 }
 
 size_t drop_duplicate_triangles(Scene& scene) {
@@ -197,8 +226,6 @@ size_t drop_duplicate_triangles(Scene& scene) {
   std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
   return dropped;
 }
-
-Scene load_scene(const std::filesystem::path& path, double time_s) { return SceneFile(path).at(time_s); }
 
 size_t Scene::triangle_count() const {
   size_t count = 0;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -103,6 +104,19 @@ struct Scene {
   size_t triangle_count() const;
 };
 
+/// A box in the file's world frame [m]; empty until something is in it.
+struct WorldBox {
+  glm::dvec3 min{std::numeric_limits<double>::infinity()};
+  glm::dvec3 max{-std::numeric_limits<double>::infinity()};
+
+  bool empty() const { return min.x > max.x; }
+  glm::dvec3 centre() const { return 0.5 * (min + max); }
+  void add(const WorldBox& other) {
+    min = glm::min(min, other.min);
+    max = glm::max(max, other.max);
+  }
+};
+
 /// A glTF file in memory, from which the scene at any time is made.
 /// @throws Error(bad_input) naming file and element: not glTF, truncated, missing buffer or image, an unknown required
 ///   extension, indices out of range, NaN or infinite vertices, cyclic nodes, a path that leaves the file's folder.
@@ -118,6 +132,15 @@ class SceneFile {
   /// their last key (none: the rest pose). Cost: copies geometry and images.
   /// @throws Error(bad_input) when the transforms of that time are not finite.
   Scene at(double time_s) const;
+  /// The same, centred on `box` and with it as its bounds, instead of those of the triangles at that time: what follows
+  /// from the bounds (the volume's grid, far planes, a sun's shadow map) then stands still while things move.
+  /// @param box  around the triangles of all times that matter: the sum of bounds().
+  Scene at(double time_s, const WorldBox& box) const;
+  /// Makes at(time_s, box) of a scene that at() of this file made. Materials, textures and images stay where they are.
+  /// @throws Error as at(); the scene is then as it was.
+  void move(Scene& scene, double time_s, const WorldBox& box) const;
+  /// Around all triangles at a time; empty when there are none.
+  WorldBox bounds(double time_s) const;
   bool animated() const;
 
  private:
@@ -125,7 +148,7 @@ class SceneFile {
   std::unique_ptr<Data> data_;
 };
 
-/// SceneFile(path).at(time_s).
+/// SceneSource(path).at(time_s) (core/scene_source.h): of a glTF file, or a scene that is called builtin:NAME.
 Scene load_scene(const std::filesystem::path& path, double time_s = 0.0);
 
 /// Removes triangles that lie exactly on an earlier one with the same front: one surface, not two, for everything that

@@ -27,6 +27,9 @@ struct LobeKernels {
   /// face f lets nothing through here.
   void (*gather)(const float* own, const float* const beside[6], const std::uint64_t* closed, const float* ahead,
                  float* out);
+  /// What a step of half a cell leaves: what comes in through open faces and what stays, `closed` as above. Through
+  /// closed faces half of what they show leaves, too.
+  void (*gather_half)(const float* own, const float* const beside[6], const std::uint64_t* closed, float* out);
   /// Scales the lobes so that what passes through their faces sums to their power.
   void (*rescale)(const float* gathered, float* out, bool stream, LeafLight& light);
   /// Both, where nothing is closed.

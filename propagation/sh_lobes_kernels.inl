@@ -1,6 +1,10 @@
 // The body of sh_lobes_{baseline,avx2,avx512}.cpp, which name its namespace VOLGI_LOBES and the floats in a vector,
 // VOLGI_LOBES_WIDTH: 8, a row of cells along z, or 16, the rows of y = 2n and 2n+1. Formulas and numbers:
 // docs/theory.md#conservative, shaders/shared/sh_constants.shared.h.
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 #include "propagation/sh_lobes_kernels.h"
 #include "shaders/shared/sh_constants.shared.h"
 
@@ -24,9 +28,9 @@ VOLGI_INLINE void store(float* p, Row r) { *reinterpret_cast<Row*>(p) = r; }
 /// Past the cache.
 VOLGI_INLINE void store_streaming(float* p, Row r) {
 #if VOLGI_LOBES_WIDTH == 16
-  __builtin_ia32_movntps512(p, r);
+  _mm512_stream_ps(p, __m512(r));
 #elif defined(__AVX__)
-  __builtin_ia32_movntps256(p, r);
+  _mm256_stream_ps(p, __m256(r));
 #else
   store(p, r);
 #endif
@@ -62,9 +66,15 @@ struct Order1 {
   /// Adds the parts of two lobes that travel up (from below) and down (from above) the axis.
   template <int kAxis, class T, class M>
   static VOLGI_INLINE void add_both(const T* below, M open_below, const T* above, M open_above, T* out) {
-    constexpr int a = component(kAxis), b = component((kAxis + 1) % 3), c = component((kAxis + 2) % 3);
     const T up = power<kAxis, 1>(below), down = power<kAxis, -1>(above);
-    const M u = open_below & passes(up, below), d = open_above & passes(down, above);
+    add_open<kAxis, T, M>(below, up, open_below & passes(up, below), above, down, open_above & passes(down, above),
+                          out);
+  }
+
+  /// The same of what is known to pass: `up` and `down` are the powers.
+  template <int kAxis, class T, class M>
+  static VOLGI_INLINE void add_open(const T* below, T up, M u, const T* above, T down, M d, T* out) {
+    constexpr int a = component(kAxis), b = component((kAxis + 1) % 3), c = component((kAxis + 2) % 3);
     out[0] += select(u, up) + select(d, down);
     out[a] += select(u, FLUX_10 * below[0] + FLUX_11 * below[a]) + select(d, FLUX_11 * above[a] - FLUX_10 * above[0]);
     out[b] += FLUX_ACROSS_11 * (select(u, below[b]) + select(d, above[b]));
@@ -107,11 +117,16 @@ struct Order2 {
   /// Even and odd moments about the axis come out of the sums and differences of what travels up and down.
   template <int kAxis, class T, class M>
   static VOLGI_INLINE void add_both(const T* below, M open_below, const T* above, M open_above, T* out) {
+    const T up = power<kAxis, 1>(below), down = power<kAxis, -1>(above);
+    add_open<kAxis, T, M>(below, up, open_below & passes(up, below), above, down, open_above & passes(down, above),
+                          out);
+  }
+
+  template <int kAxis, class T, class M>
+  static VOLGI_INLINE void add_open(const T* below, T up, M u, const T* above, T down, M d, T* out) {
     constexpr int kB = (kAxis + 1) % 3, kC = (kAxis + 2) % 3;
     constexpr int a = component(kAxis), b = component(kB), c = component(kC);
     constexpr int ab = product(kAxis, kB), ac = product(kAxis, kC), bc = product(kB, kC);
-    const T up = power<kAxis, 1>(below), down = power<kAxis, -1>(above);
-    const M u = open_below & passes(up, below), d = open_above & passes(down, above);
     const T below_0 = select(u, below[0]), above_0 = select(d, above[0]);
     const T below_a = select(u, below[a]), above_a = select(d, above[a]);
     const T below_q = select(u, about<kAxis>(below)), above_q = select(d, about<kAxis>(above));
@@ -202,8 +217,8 @@ VOLGI_INLINE Row below_y(const float* own, const float* beside, int at) {
 VOLGI_INLINE Row above_y(const float* own, const float* beside, int at) {
   return load((at & 56) != 56 ? own + at + 8 : beside + at - 56);
 }
-VOLGI_INLINE Row below_z(Row own, Row beside) { return __builtin_shuffle(own, beside, Mask{15, 0, 1, 2, 3, 4, 5, 6}); }
-VOLGI_INLINE Row above_z(Row own, Row beside) { return __builtin_shuffle(own, beside, Mask{1, 2, 3, 4, 5, 6, 7, 8}); }
+VOLGI_INLINE Row below_z(Row own, Row beside) { return __builtin_shufflevector(own, beside, 15, 0, 1, 2, 3, 4, 5, 6); }
+VOLGI_INLINE Row above_z(Row own, Row beside) { return __builtin_shufflevector(own, beside, 1, 2, 3, 4, 5, 6, 7, 8); }
 VOLGI_INLINE std::uint64_t closed_at(const std::uint64_t* closed, int at) { return closed[at >> 3]; }
 VOLGI_INLINE Mask open_mask(const std::uint64_t* closed, int at, int face) {
   const auto bits = std::int32_t(closed[at >> 3] >> (8 * face));
@@ -221,10 +236,10 @@ VOLGI_INLINE Row above_y(const float* own, const float* beside, int at) {
   return (at & 56) != 48 ? load_unaligned(own + at + 8) : two(own + at + 8, beside + at - 48);
 }
 VOLGI_INLINE Row below_z(Row own, Row beside) {
-  return __builtin_shuffle(own, beside, Mask{23, 0, 1, 2, 3, 4, 5, 6, 31, 8, 9, 10, 11, 12, 13, 14});
+  return __builtin_shufflevector(own, beside, 23, 0, 1, 2, 3, 4, 5, 6, 31, 8, 9, 10, 11, 12, 13, 14);
 }
 VOLGI_INLINE Row above_z(Row own, Row beside) {
-  return __builtin_shuffle(own, beside, Mask{1, 2, 3, 4, 5, 6, 7, 16, 9, 10, 11, 12, 13, 14, 15, 24});
+  return __builtin_shufflevector(own, beside, 1, 2, 3, 4, 5, 6, 7, 16, 9, 10, 11, 12, 13, 14, 15, 24);
 }
 VOLGI_INLINE std::uint64_t closed_at(const std::uint64_t* closed, int at) {
   return closed[at >> 3] | closed[(at >> 3) + 1];
@@ -299,6 +314,8 @@ void gather(const float* own, const float* const beside[6], const std::uint64_t*
     }
   }
 }
+
+#include "propagation/sh_lobes_half_steps.inl"
 
 template <class Order, bool kStream>
 void rescale_to(const float* gathered, float* out, LeafLight& light) {
@@ -432,9 +449,9 @@ void add_crossing(const float* from, int face, float share, float* to) {
 
 }  // namespace
 
-const LobeKernels kOrder1 = {gather<Order1>,      rescale<Order1>,   gather_rescale<Order1>, carried<Order1>,
-                             face_powers<Order1>, add_lobes<Order1>, add_crossing<Order1>};
-const LobeKernels kOrder2 = {gather<Order2>,      rescale<Order2>,   gather_rescale<Order2>, carried<Order2>,
-                             face_powers<Order2>, add_lobes<Order2>, add_crossing<Order2>};
+const LobeKernels kOrder1 = {gather<Order1>,  gather_half<Order1>, rescale<Order1>,   gather_rescale<Order1>,
+                             carried<Order1>, face_powers<Order1>, add_lobes<Order1>, add_crossing<Order1>};
+const LobeKernels kOrder2 = {gather<Order2>,  gather_half<Order2>, rescale<Order2>,   gather_rescale<Order2>,
+                             carried<Order2>, face_powers<Order2>, add_lobes<Order2>, add_crossing<Order2>};
 
 }  // namespace volgi::VOLGI_LOBES

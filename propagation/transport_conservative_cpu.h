@@ -57,6 +57,7 @@ class ConservativeTransport : public Transport {
 
   const VoxelGrid& voxels_;
   int order_;
+  bool half_steps_ = false;  // light moves by half a cell a pass
   LobeKernels kernels_;
   LobeWave wave_;
   std::vector<std::unique_ptr<LeafWalls>> walls_;  // by number of leaf

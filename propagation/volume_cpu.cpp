@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "core/surface.h"
 #include "core/visibility/light_flux.h"
@@ -77,9 +78,21 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options.scheme), "CPU");
-  const bool first_bounce = options.source == VolumeOptions::Source::first_bounce;
-  if (first_bounce) emitters_ = std::make_unique<EmitterPoints>(scene);
-  if (!scene.lights.empty() || (first_bounce && !emitters_->empty())) embree_ = std::make_unique<EmbreeScene>(scene);
+  look_at_geometry();
+}
+
+/// What is made of the scene's triangles once for all frames in which they stand still.
+void VolumeCpu::look_at_geometry() {
+  embree_.reset();
+  const bool first_bounce = options_.source == VolumeOptions::Source::first_bounce;
+  if (first_bounce) emitters_ = std::make_unique<EmitterPoints>(scene_);
+  if (!scene_.lights.empty() || (first_bounce && !emitters_->empty())) embree_ = std::make_unique<EmbreeScene>(scene_);
+}
+
+void VolumeCpu::scene_moved() {
+  rules_ = bounce_rules(options_, largest_albedo(scene_));
+  look_at_geometry();
+  moved_ = true;
 }
 
 VolumeCpu::~VolumeCpu() = default;
@@ -94,11 +107,15 @@ void VolumeCpu::run() {
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
-  // A scene that stands still keeps its transport, with what is in flight in it.
-  if ((bounces_ || pulse_) && same_sides(fresh, voxels_)) return;
-  voxels_ = std::move(fresh);
   const bool coarse = options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start &&
                       std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
+  // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
+  // coarse grid's sides, and no side.
+  const bool moved = std::exchange(moved_, false);
+  if (moved && !papers) cells_ = {};  // made when asked for
+  const bool only_sides_count = !moved || !(coarse || papers);
+  if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
+  voxels_ = std::move(fresh);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);

@@ -22,6 +22,10 @@ class VolumeCpu {
   VolumeCpu(const Scene& scene, const VolumeOptions& options);
   ~VolumeCpu();
 
+  /// The scene has moved within the same grid, in place: rays and emission meet it where it is now. Materials, textures
+  /// and images must be the same. Cost: Embree's tree on one thread, 1 ms for some 2000 triangles.
+  void scene_moved();
+
   void run();
   // The stages of run(), in this order.
   void voxelize();
@@ -45,6 +49,7 @@ class VolumeCpu {
   size_t bytes() const;
 
  private:
+  void look_at_geometry();
   void direct_light_in();
   void first_bounce_in();
 
@@ -64,6 +69,7 @@ class VolumeCpu {
   SideIrradiance irradiance_;
   BounceReport report_;
   bool emits_ = false;
+  bool moved_ = false;  // since the last voxelization
 };
 
 /// Sides that the scene's triangles will have on the grid, from their areas (each shows s = |n_x|+|n_y|+|n_z| times its

@@ -48,37 +48,44 @@ void draw_text(Image& image, int x, int y, std::string_view text) {
 
 int text_width(std::string_view text) { return static_cast<int>(text.size()) * (kGlyphWidth + 1); }
 
-void draw_legend(Image& image, int top) {
-  constexpr int margin = 8, bar_height = 10, text_gap = 14;
-  const int left = margin, right = image.width - margin;
-  for (int x = left; x < right; ++x) {
-    const float at = (static_cast<float>(x - left) + 0.5f) / static_cast<float>(right - left);
-    for (int y = 0; y < bar_height; ++y) image.at(x, top + 4 + y) = error_color((2.0f * at - 1.0f) * kSaturation);
-  }
-  const int y = top + 4 + text_gap;
-  constexpr std::string_view dark = "-50% dark", bright = "bright +50%";
-  draw_text(image, left, y, dark);
-  draw_text(image, (left + right) / 2 - kGlyphWidth / 2, y, "0");
-  draw_text(image, right - text_width(bright), y, bright);
-}
-
 }  // namespace
 
-Image error_map(const Image& ref, const Image& test, const Mask& mask) {
+Image error_colors(const Image& ref, const Image& test, const Mask& mask) {
   double sum = 0;
   for (const glm::vec3& r : ref.pixels) sum += static_cast<double>(r.x + r.y + r.z) / 3;
   const float floor = std::max(0.1f * static_cast<float>(sum / static_cast<double>(ref.pixels.size())), 1e-9f);
+  Image out(ref.width, ref.height);
+  for (size_t i = 0; i < ref.pixels.size(); ++i) {
+    const glm::vec3 r = ref.pixels[i], t = test.pixels[i];
+    const float base = (r.x + r.y + r.z) / 3, relative = ((t.x + t.y + t.z) / 3 - base) / (base + floor);
+    out.pixels[i] = std::isfinite(relative) ? error_color(relative) * (mask[i] != 0 ? 1.0f : kOutside) : kNotFinite;
+  }
+  return out;
+}
+
+Image error_scale(int width) {
+  constexpr int margin = 8, bar_top = 4, bar_height = 10, text_top = bar_top + 14;
+  Image out(width, kLegendHeight);
+  const int left = margin, right = width - margin;
+  for (int x = left; x < right; ++x) {
+    const float at = (static_cast<float>(x - left) + 0.5f) / static_cast<float>(right - left);
+    for (int y = bar_top; y < bar_top + bar_height; ++y) out.at(x, y) = error_color((2.0f * at - 1.0f) * kSaturation);
+  }
+  constexpr std::string_view dark = "-50% dark", bright = "bright +50%";
+  draw_text(out, left, text_top, dark);
+  draw_text(out, (left + right) / 2 - kGlyphWidth / 2, text_top, "0");
+  draw_text(out, right - text_width(bright), text_top, bright);
+  return out;
+}
+
+Image error_map(const Image& ref, const Image& test, const Mask& mask) {
+  const Image colors = error_colors(ref, test, mask);
   const int scale = (256 + std::min(ref.width, ref.height) - 1) / std::min(ref.width, ref.height);
   Image out(ref.width * scale, ref.height * scale + kLegendHeight);
   for (int y = 0; y < ref.height * scale; ++y)
-    for (int x = 0; x < ref.width * scale; ++x) {
-      const glm::vec3 r = ref.at(x / scale, y / scale), t = test.at(x / scale, y / scale);
-      const float base = (r.x + r.y + r.z) / 3, relative = ((t.x + t.y + t.z) / 3 - base) / (base + floor);
-      const bool inside =
-          mask[static_cast<size_t>(y / scale) * static_cast<size_t>(ref.width) + static_cast<size_t>(x / scale)];
-      out.at(x, y) = std::isfinite(relative) ? error_color(relative) * (inside ? 1.0f : kOutside) : kNotFinite;
-    }
-  draw_legend(out, ref.height * scale);
+    for (int x = 0; x < out.width; ++x) out.at(x, y) = colors.at(x / scale, y / scale);
+  const Image legend = error_scale(out.width);
+  std::copy(legend.pixels.begin(), legend.pixels.end(), out.pixels.end() - std::ptrdiff_t(legend.pixels.size()));
   return out;
 }
 

@@ -4,24 +4,13 @@
 #include <array>
 #include <cassert>
 
-#include "reference/path_integrator.h"
 #include "reference/picture_layers.h"
+#include "reference/pixel_tracer.h"
 
 namespace volgi {
 namespace {
 
 using AskedLight = PathTracerOptions::Light;
-
-// Samples of one half of a pixel, summed in double and always in the same order.
-struct HalfSum {
-  glm::dvec3 direct{0.0};
-  glm::dvec3 indirect{0.0};
-};
-
-glm::dvec3 asked_for(const HalfSum& sum, AskedLight light) {
-  if (light == AskedLight::direct) return sum.direct;
-  return light == AskedLight::indirect ? sum.indirect : sum.direct + sum.indirect;
-}
 
 Image half_difference(const Image& a, const Image& b) {
   Image out = a;
@@ -35,46 +24,27 @@ class PictureTracer {
       : scene_(scene),
         camera_(camera),
         options_(options),
-        integrator_(scene),
+        tracer_(scene, camera, options),
         samples_per_half_(std::max(1, (options.samples_per_pixel + 1) / 2)),
-        max_bounces_(options.light == AskedLight::direct ? 0 : options.max_bounces.value_or(PathIntegrator::unlimited)),
         picture_(empty_picture(options.size, options.light)) {}
 
   void trace_pixel(int x, int y) {
-    const glm::vec2 corner(x, y);
-    const CameraRay ray = camera_ray(camera_, corner + 0.5f, options_.size);
+    CameraRay ray;
     PathVertex centre;
-    const bool hit = integrator_.first_vertex(ray, hash(options_.seed, 0x5eedu), centre);
+    const bool hit = tracer_.centre({x, y}, ray, centre);
     if (hit) write_first_hit(picture_, {x, y}, scene_, camera_, ray, centre);
-    const bool same_first_vertex = options_.filter == PathTracerOptions::Filter::point && !integrator_.has_blending();
-    if (same_first_vertex && !hit) return;
-    std::array<HalfSum, 2> halves;
-    for (std::uint32_t half = 0; half < 2; ++half) {
-      const std::uint32_t pixel =
-          static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(options_.size.x) + static_cast<std::uint32_t>(x);
-      const std::uint32_t seed = hash(hash(options_.seed, pixel), half);
-      for (int i = 0; i < samples_per_half_; ++i)
-        add_sample(corner, same_first_vertex ? &centre : nullptr, {seed, static_cast<std::uint32_t>(i)}, halves[half]);
-    }
+    const bool known = tracer_.starts_at_centre();
+    if (known && !hit) return;
+    std::array<LightSum, 2> halves;
+    for (std::uint32_t half = 0; half < 2; ++half)
+      tracer_.add_samples({x, y}, known ? &centre : nullptr, half, 0, samples_per_half_, halves[half]);
     write_light(x, y, halves);
   }
 
   ReferencePicture take() { return std::move(picture_); }
 
  private:
-  void add_sample(glm::vec2 corner, const PathVertex* known, PathSampler sampler, HalfSum& sum) const {
-    PathVertex vertex;
-    if (known == nullptr) {
-      const bool box = options_.filter == PathTracerOptions::Filter::box;
-      const glm::vec2 position = corner + (box ? sampler.next2() : glm::vec2(0.5f));
-      if (!integrator_.first_vertex(camera_ray(camera_, position, options_.size), sampler.next_seed(), vertex)) return;
-    }
-    const PathRadiance radiance = integrator_.trace(known != nullptr ? *known : vertex, sampler, max_bounces_);
-    sum.direct += glm::dvec3(radiance.direct);
-    sum.indirect += glm::dvec3(radiance.indirect);
-  }
-
-  void write_light(int x, int y, const std::array<HalfSum, 2>& halves) {
+  void write_light(int x, int y, const std::array<LightSum, 2>& halves) {
     const double scale = 1.0 / samples_per_half_;
     const glm::dvec3 a = asked_for(halves[0], options_.light) * scale, b = asked_for(halves[1], options_.light) * scale;
     const glm::dvec3 direct_a = halves[0].direct * scale, direct_b = halves[1].direct * scale;
@@ -89,9 +59,8 @@ class PictureTracer {
   const Scene& scene_;
   const Camera& camera_;
   const PathTracerOptions& options_;
-  PathIntegrator integrator_;
+  PixelTracer tracer_;
   int samples_per_half_;
-  int max_bounces_;
   ReferencePicture picture_;
 };
 

@@ -29,6 +29,7 @@ void ChooseVirtualLights::make_room(const VirtualLightListGl& candidates) {
   const size_t bytes = padded_count(lights_) * sizeof(shared::VirtualLight);
   if (lights_.buffer.bytes() != bytes) lights_.buffer = gl::Buffer(bytes);
   lights_.buffer.clear();
+  gl::reserve(ranges_, size_t(std::max(lights_.count(), 1)) * 2 * sizeof(float));
   gl::reserve(weights_, size_t(std::max(candidates.count(), 1)) * 2 * sizeof(float));
 }
 
@@ -39,6 +40,7 @@ void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffe
   receivers_.bind_storage(1);
   weights_.bind_storage(2);
   lights_.buffer.bind_storage(3);
+  ranges_.bind_storage(4);
   gbuffer.position().bind(0);
   gbuffer.normals().bind(1);
   gbuffer.albedo().bind(2);

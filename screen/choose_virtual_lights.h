@@ -24,7 +24,11 @@ class ChooseVirtualLights {
   void run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer);
 
   const VirtualLightListGl& lights() const { return lights_; }
-  size_t bytes() const { return lights_.buffer.bytes() + receivers_.bytes() + weights_.bytes(); }
+  /// vec2 for each light: the range [x, y) of its source's candidates that it stands for, counted from 0 and in parts
+  /// of one. Ranges follow on one another, without gap or overlap.
+  const gl::Buffer& ranges() const { return ranges_; }
+  int one_of() const { return one_of_; }
+  size_t bytes() const { return lights_.buffer.bytes() + receivers_.bytes() + weights_.bytes() + ranges_.bytes(); }
 
  private:
   void make_room(const VirtualLightListGl& candidates);
@@ -32,7 +36,7 @@ class ChooseVirtualLights {
 
   int one_of_;
   VirtualLightListGl lights_;
-  gl::Buffer receivers_, weights_;
+  gl::Buffer receivers_, weights_, ranges_;
   gl::Program receivers_program_, weigh_, sum_, choose_;
 };
 

@@ -36,9 +36,15 @@ bool needs_volume(const Scene& scene, const FrameOptions& options) {
   return needs_carrier(scene, options);
 }
 
+bool lights_have_parts(const FrameOptions& options) {
+  return options.near_zone > 0.0f && options.choose_one_of > 1 &&
+         (options.gi == GiMode::val || options.gi == GiMode::hybrid);
+}
+
 VirtualLightOptions candidate_options(const FrameOptions& options) {
   VirtualLightOptions o = options.virtual_lights;
   o.candidates = options.choose_one_of;
+  o.along_curve = lights_have_parts(options);
   return o;
 }
 
@@ -74,16 +80,54 @@ Frame::Frame(const Scene& scene, const FrameOptions& options)
     options_.volume.source = VolumeOptions::Source::first_bounce;
     options_.volume.virtual_lights = options_.virtual_lights.count;
   }
-  if (needs_volume(scene, options_)) {
-    volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene, options_.volume, options_.size)
-                                            : make_volume_on_cpu(scene, options_.volume, options_.size);
-  }
-  if (budget_.first_bounce == BounceBudget::Carrier::virtual_lights && needs_carrier(scene, options_))
-    make_first_bounce();
+  follow_with_volume();
+  follow_with_first_bounce();
   warn_of_missing_light(scene, options_, budget_);
 }
 
 Frame::~Frame() = default;
+
+void Frame::follow_scene(gl::PassTimer& timer) {
+  const auto scope = timer.scope("screen/follow_scene");
+  buffers_.set_geometry(scene_);
+  follow_with_volume();
+  follow_with_first_bounce();
+}
+
+void Frame::follow_with_volume() {
+  if (!needs_volume(scene_, options_)) {
+    volume_.reset();
+  } else if (!volume_ || !volume_->follow_scene()) {
+    volume_.reset();  // first, so that there are never two
+    volume_ = runs_on_gpu(options_.backend) ? make_volume_on_gpu(scene_, options_.volume, options_.size)
+                                            : make_volume_on_cpu(scene_, options_.volume, options_.size);
+  }
+}
+
+void Frame::follow_with_first_bounce() {
+  if (budget_.first_bounce != BounceBudget::Carrier::virtual_lights || !needs_carrier(scene_, options_)) {
+    drop_first_bounce();
+  } else if (!virtual_lights_) {
+    make_first_bounce();
+  } else {
+    virtual_lights_->scene_moved();
+    if (voxels_) voxels_->follow_scene();
+  }
+}
+
+void Frame::drop_first_bounce() {
+  virtual_lights_.reset();
+  choose_virtual_lights_.reset();
+  light_parts_.reset();
+  near_lights_.reset();
+  voxels_.reset();
+  negative_lights_.reset();
+  virtual_light_gather_.reset();
+  area_light_gather_.reset();
+  area_light_shadow_.reset();
+  area_light_maps_.reset();
+  area_lights_.reset();
+}
 
 void Frame::make_first_bounce() {
   virtual_lights_ = std::make_unique<VirtualLights>(scene_, candidate_options(options_));
@@ -94,6 +138,11 @@ void Frame::make_first_bounce() {
     area_light_maps_ = std::make_unique<ParaboloidDepthMaps>(options_.area_light_map, options_.area_lights.count);
     area_light_shadow_ =
         AreaLightShadow::make(options_.area_light_shadow, options_.area_light_map, options_.area_lights.count);
+    if (lights_have_parts(options_)) {
+      light_parts_ = std::make_unique<VirtualLightParts>();
+      near_lights_ = std::make_unique<NearLights>(options_.size, options_.near_zone);
+      options_.area_light_gather.near_zone = options_.near_zone;
+    }
     area_light_gather_ =
         std::make_unique<AreaLightGather>(options_.size, options_.area_light_gather, *area_light_shadow_);
     return;
@@ -126,6 +175,8 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   if (virtual_lights_) {
     virtual_lights_->run(shadow_maps_, timer);
     if (choose_virtual_lights_) choose_virtual_lights_->run(virtual_lights_->list(), gbuffer_, timer);
+    if (light_parts_) light_parts_->run(shadow_maps_, *virtual_lights_, *choose_virtual_lights_, timer);
+    if (near_lights_) near_lights_->run(gbuffer_, light_list(), *light_parts_, timer);
     if (area_lights_) {
       light_by_area_lights(light_list(), timer);
     } else {
@@ -151,9 +202,14 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   }
   if (virtual_lights_) {
     const bool by_area = area_light_gather_ != nullptr;
-    layers.direct.push_back(by_area ? &area_light_gather_->direct() : &virtual_light_gather_->direct());
+    if (light_list().emitted > 0)  // else nobody has written it in this frame
+      layers.direct.push_back(by_area ? &area_light_gather_->direct() : &virtual_light_gather_->direct());
     if (!direct_only(options_))
       layers.indirect.push_back(by_area ? &area_light_gather_->indirect() : &virtual_light_gather_->indirect());
+  }
+  if (near_lights_) {
+    if (light_list().emitted > 0) layers.direct.push_back(&near_lights_->direct());
+    if (!direct_only(options_)) layers.indirect.push_back(&near_lights_->indirect());
   }
   compose_.run(gbuffer_, layers, options_.light, timer);
 }
@@ -186,6 +242,7 @@ FrameReport Frame::report() const {
     r.memory_bytes +=
         area_lights_->bytes() + area_light_maps_->bytes() + area_light_shadow_->bytes() + area_light_gather_->bytes();
   }
+  if (near_lights_) r.memory_bytes += near_lights_->bytes() + light_parts_->bytes();
   if (negative_lights_) {
     r.negative_lights = negative_lights_->count();
     r.memory_bytes += negative_lights_->bytes() + (voxels_ ? voxels_->bytes() : 0);

@@ -11,6 +11,7 @@
 #include "screen/direct.h"
 #include "screen/frame_volume.h"
 #include "screen/frame_voxels.h"
+#include "screen/near_lights.h"
 #include "screen/negative_lights.h"
 #include "screen/reflective_shadow_map.h"
 #include "screen/virtual_light_gather.h"
@@ -33,11 +34,12 @@ struct FrameOptions {
   ReflectiveShadowMap::Resolution shadow_resolution;
   VirtualLightOptions virtual_lights;
   int choose_one_of = 16;  // candidates for each virtual light (ChooseVirtualLights); 1: take them as they come
+  float near_zone = 4.0f;  // val, hybrid: areas of a virtual light near which its parts light (NearLights); 0: none
   NegativeLightOptions negative_lights;
   GatherOptions gather;
   VirtualAreaLightOptions area_lights;
   AreaLightShadow::Method area_light_shadow = AreaLightShadow::Method::single;
-  int area_light_map = 256;  // texels on each side of an area light's map
+  int area_light_map = 128;  // texels on each side of an area light's map
   AreaLightGatherOptions area_light_gather;
 };
 
@@ -51,8 +53,8 @@ struct FrameReport {
   size_t memory_bytes = 0;    // of GL objects, and of the volume wherever it lies
 };
 
-/// The frame: which passes run, and in which order. One scene, one picture size; render() as often as wanted.
-/// Needs a current gl::Context.
+/// The frame: which passes run, and in which order. One scene, one picture size; render() as often as wanted. Lights
+/// may change between frames as they like; geometry with follow_scene(). Needs a current gl::Context.
 class Frame {
  public:
   /// @throws Error as make_grid and gl::Buffer do; Error(usage) for volume options that make no sense together;
@@ -63,6 +65,13 @@ class Frame {
   Frame& operator=(const Frame&) = delete;
 
   void render(const Camera& camera, gl::PassTimer& timer);
+  /// The scene has changed in place (SceneSource::move): meshes, lights, bounds and origin, but neither materials nor
+  /// textures nor images. The next render() shows what a new Frame would, unless VolumeOptions::warm_start or
+  /// passes_a_run have it start from the last answer; programs, textures, maps and buffers stay. Where the bounds make
+  /// another grid the volume is made anew: a grid that stands still is faster and does not flicker
+  /// (SceneFile::at(time, box)). Pass "screen/follow_scene": vertices, emissive surfaces, on the CPU Embree's tree.
+  /// @throws Error as the constructor.
+  void follow_scene(gl::PassTimer& timer);
   const gl::Texture& radiance() const;
   /// Waits for the GPU; after a frame, not in one.
   FrameReport report() const;
@@ -70,7 +79,10 @@ class Frame {
   VirtualLightList virtual_lights() const;
 
  private:
+  void follow_with_volume();
+  void follow_with_first_bounce();
   void make_first_bounce();
+  void drop_first_bounce();
   void light_by_area_lights(const VirtualLightListGl& lights, gl::PassTimer& timer);
   void light_by_virtual_lights(const VirtualLightListGl& lights, const Camera& camera, gl::PassTimer& timer);
   float scene_diagonal_m() const { return glm::distance(scene_.bounds_min, scene_.bounds_max); }
@@ -88,6 +100,8 @@ class Frame {
   std::unique_ptr<FrameVolume> volume_;
   std::unique_ptr<VirtualLights> virtual_lights_;
   std::unique_ptr<ChooseVirtualLights> choose_virtual_lights_;
+  std::unique_ptr<VirtualLightParts> light_parts_;
+  std::unique_ptr<NearLights> near_lights_;
   std::unique_ptr<FrameVoxels> voxels_;
   std::unique_ptr<NegativeLights> negative_lights_;
   std::unique_ptr<VirtualLightGather> virtual_light_gather_;

@@ -30,6 +30,9 @@ class FrameVolume {
   ///   the CPU finds its own.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
                    const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
+  /// The scene has changed in place, its materials, textures and images apart: the next run meets it as a new volume
+  /// would. @return false if this volume cannot follow, as when the bounds make another grid: make a new one then.
+  virtual bool follow_scene() { return false; }
   virtual const gl::Texture& direct() const = 0;    // RGBA32F: first arrival of emission, reflected to the viewer
   virtual const gl::Texture& indirect() const = 0;  // RGBA32F [W m^-2 sr^-1]
   /// Waits for the GPU; after a frame, not in one.

@@ -1,5 +1,7 @@
 #include "screen/frame_voxels.h"
 
+#include <optional>
+
 #include "voxel/sliced_voxelization.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -7,20 +9,37 @@ namespace volgi::screen {
 
 namespace {
 
+Grid grid_of(const Scene& scene, const VolumeOptions& options) {
+  return make_grid(scene, options.grid_cells, options.grid_shift_cells);
+}
+
 class VoxelsOnGpu : public FrameVoxels {
  public:
-  explicit VoxelsOnGpu(const Grid& grid) : voxelization_(grid) {}
-  void run(const gl::SceneBuffers& buffers, gl::PassTimer& timer) override { voxelization_.run(buffers, timer); }
-  const VoxelGridGl& voxels() const override { return voxelization_.voxels(); }
-  size_t bytes() const override { return voxelization_.bytes(); }
+  VoxelsOnGpu(const Scene& scene, const VolumeOptions& options)
+      : scene_(scene), options_(options), voxelization_(std::in_place, grid_of(scene, options)) {}
+
+  void run(const gl::SceneBuffers& buffers, gl::PassTimer& timer) override { voxelization_->run(buffers, timer); }
+  void follow_scene() override {
+    const Grid grid = grid_of(scene_, options_);
+    if (same_grid(grid, voxels().grid)) {
+      voxelization_->count_again();
+    } else {
+      voxelization_.emplace(grid);
+    }
+  }
+  const VoxelGridGl& voxels() const override { return voxelization_->voxels(); }
+  size_t bytes() const override { return voxelization_->bytes(); }
 
  private:
-  SlicedVoxelization voxelization_;
+  const Scene& scene_;
+  VolumeOptions options_;
+  std::optional<SlicedVoxelization> voxelization_;
 };
 
 class VoxelsOnCpu : public FrameVoxels {
  public:
-  VoxelsOnCpu(const Scene& scene, const Grid& grid) : scene_(scene), grid_(grid) {}
+  VoxelsOnCpu(const Scene& scene, const VolumeOptions& options)
+      : scene_(scene), options_(options), grid_(grid_of(scene, options)) {}
 
   void run(const gl::SceneBuffers& /*buffers*/, gl::PassTimer& timer) override {
     VoxelGrid voxels;
@@ -31,11 +50,13 @@ class VoxelsOnCpu : public FrameVoxels {
     const auto scope = timer.scope("screen/upload_voxels");
     upload(voxels, voxels_);
   }
+  void follow_scene() override { grid_ = grid_of(scene_, options_); }
   const VoxelGridGl& voxels() const override { return voxels_; }
   size_t bytes() const override { return voxels_.bytes(); }
 
  private:
   const Scene& scene_;
+  VolumeOptions options_;
   Grid grid_;
   VoxelGridGl voxels_;
 };
@@ -43,9 +64,8 @@ class VoxelsOnCpu : public FrameVoxels {
 }  // namespace
 
 std::unique_ptr<FrameVoxels> make_frame_voxels(const Scene& scene, const VolumeOptions& options, bool on_gpu) {
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
-  if (on_gpu) return std::make_unique<VoxelsOnGpu>(grid);
-  return std::make_unique<VoxelsOnCpu>(scene, grid);
+  if (on_gpu) return std::make_unique<VoxelsOnGpu>(scene, options);
+  return std::make_unique<VoxelsOnCpu>(scene, options);
 }
 
 }  // namespace volgi::screen

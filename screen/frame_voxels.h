@@ -13,6 +13,8 @@ class FrameVoxels {
  public:
   virtual ~FrameVoxels() = default;
   virtual void run(const gl::SceneBuffers& buffers, gl::PassTimer& timer) = 0;
+  /// The scene has changed in place: the next run finds its sides, on another grid where the bounds ask for one.
+  virtual void follow_scene() = 0;
   virtual const VoxelGridGl& voxels() const = 0;
   virtual size_t bytes() const = 0;
 };

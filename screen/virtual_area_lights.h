@@ -10,7 +10,7 @@
 namespace volgi::screen {
 
 struct VirtualAreaLightOptions {
-  int count = 30;                // M, up to VIRTUAL_AREA_LIGHTS_MOST
+  int count = 64;                // M, up to VIRTUAL_AREA_LIGHTS_MOST
   float position_weight = 0.7f;  // w_x, of the distance over the scene's diagonal
   float normal_weight = 0.3f;    // w_alpha, of the angle over pi
 };

@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 #include "core/halton.h"
@@ -77,6 +78,11 @@ VirtualLights::VirtualLights(const Scene& scene, const VirtualLightOptions& opti
   }
 }
 
+void VirtualLights::scene_moved() {
+  emitters_ = EmitterPoints(scene_);
+  emitters_moved_ = true;
+}
+
 LightShares VirtualLights::shares() const {
   LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
                                           : share_by_power(scene_, emitters_.flux(), options_.count);
@@ -94,7 +100,9 @@ LightShares VirtualLights::shares() const {
 
 /// Makes room, and places what does not depend on the maps: points on emissive surfaces, zeros behind the last.
 void VirtualLights::lay_out(const LightShares& shares) {
-  if (list_.buffer.id() != 0 && shares.of_light == list_.of_light && shares.of_emitters == list_.emitted) return;
+  const bool moved = std::exchange(emitters_moved_, false) && shares.of_emitters > 0;
+  if (!moved && list_.buffer.id() != 0 && shares.of_light == list_.of_light && shares.of_emitters == list_.emitted)
+    return;
   list_.of_light = shares.of_light;
   list_.reflected = std::accumulate(shares.of_light.begin(), shares.of_light.end(), 0);
   list_.emitted = shares.of_emitters;
@@ -118,7 +126,7 @@ void VirtualLights::make_samples(const LightShares& shares) {
   }
   if (samples_.id() != 0 && keys == keys_) return;
   std::vector<glm::vec4> samples;
-  for (size_t i = 0; i < scene_.lights.size(); ++i) {
+  for (size_t i = 0; i < scene_.lights.size() && !along_curve(); ++i) {
     auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i]);
     if (options_.candidates > 1) {
       const bool by_area = options_.sampling == Sampling::flux || scene_.lights[i].type == Light::Type::directional;
@@ -126,6 +134,7 @@ void VirtualLights::make_samples(const LightShares& shares) {
     }
     samples.insert(samples.end(), of_light.begin(), of_light.end());
   }
+  if (samples.empty()) samples.emplace_back(0.0f);
   samples_ = gl::Buffer(samples);
   keys_ = std::move(keys);
 }
@@ -159,17 +168,20 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void VirtualLights::sample_evenly(const ReflectiveShadowMap& maps, int light) const {
+double VirtualLights::set_sampling(const gl::Program& program, const ReflectiveShadowMap& maps, int light) const {
   const Light& l = scene_.lights[size_t(light)];
-  const int count = keys_[size_t(light)].count;
-  double measure = 2.0 * glm::pi<double>() * cone_height(l);
-  if (l.type == Light::Type::directional) {
-    const size_t layer = size_t(maps.lights()[size_t(light)].first_layer);
-    measure = rectangle_of_sun_m2(maps.layers()[layer], maps.resolution(light));
-  }
-  lights_program_.set("measure", float(measure / count));
-  lights_program_.set("world_from_axis",
-                      l.type == Light::Type::spot ? world_from_axis(glm::dvec3(l.direction)) : glm::mat3(1.0f));
+  program.set("world_from_axis",
+              l.type == Light::Type::spot ? world_from_axis(glm::dvec3(l.direction)) : glm::mat3(1.0f));
+  program.set("cone_height", float(cone_height(l)));
+  if (l.type != Light::Type::directional) return 2.0 * glm::pi<double>() * cone_height(l);
+  const size_t layer = size_t(maps.lights()[size_t(light)].first_layer);
+  return rectangle_of_sun_m2(maps.layers()[layer], maps.resolution(light));
+}
+
+void VirtualLights::sample_evenly(const ReflectiveShadowMap& maps, int light) const {
+  const double measure = set_sampling(lights_program_, maps, light);
+  lights_program_.set("measure", float(measure / keys_[size_t(light)].count));
+  lights_program_.set("along_curve", along_curve() ? 1 : 0);
 }
 
 void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {

@@ -21,6 +21,9 @@ struct VirtualLightOptions {
   /// flux: in proportion to what texels of the reflective shadow map reflect.
   enum class Sampling { halton, flux } sampling = Sampling::halton;
   int candidates = 1;  // so many times the lights of each source, for ChooseVirtualLights
+  /// Instead of Halton's points, equal steps along Hilbert's curve, so that what lies between two can be looked at
+  /// again (VirtualLightParts).
+  bool along_curve = false;
   static constexpr int kMost = 65536;
 };
 
@@ -29,13 +32,23 @@ struct VirtualLightOptions {
 class VirtualLights {
  public:
   static constexpr const char* name = "screen/virtual_lights";
-  /// @param scene  must outlive this. Only its lights may change.
+  /// @param scene  must outlive this. Its lights may change at any time, its geometry with scene_moved().
   /// @throws Error(usage) when the options ask for less than one light, or more than kMost.
   VirtualLights(const Scene& scene, const VirtualLightOptions& options);
 
   /// @param maps  of the lights of `scene` as they are now.
   /// @throws Error(over_limit) when per_light times the number of sources exceeds kMost.
   void run(const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+  /// The scene's geometry is another than before: its emissive surfaces are looked at again.
+  void scene_moved();
+
+  /// Where samples of a light lie, for programs with screen/virtual_light_sample.glsl: sets its `world_from_axis` and
+  /// `cone_height`. @returns the measure of all of them [sr], of a sun [m^2].
+  double set_sampling(const gl::Program& program, const ReflectiveShadowMap& maps, int light) const;
+  /// Whether samples lie at equal steps of Hilbert's curve (screen/virtual_light_sample.glsl).
+  bool along_curve() const {
+    return options_.along_curve && options_.sampling == VirtualLightOptions::Sampling::halton;
+  }
 
   const VirtualLightListGl& list() const { return list_; }
   const gl::Buffer& buffer() const { return list_.buffer; }
@@ -64,6 +77,7 @@ class VirtualLights {
   VirtualLightOptions options_;
   EmitterPoints emitters_;
   VirtualLightListGl list_;
+  bool emitters_moved_ = false;
   gl::Buffer samples_;  // vec4 each: of all lights, in their order
   gl::Buffer pyramid_;  // of one light at a time: flux_importance.glsl
   std::vector<SampleKey> keys_;

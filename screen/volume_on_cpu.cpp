@@ -21,6 +21,13 @@ void run_stages(VolumeCpu& volume, gl::PassTimer& timer) {
   stage("propagation/side_irradiance_cpu", &VolumeCpu::irradiate);
 }
 
+/// FrameVolume::follow_scene.
+bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume) {
+  if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells), volume.grid())) return false;
+  volume.scene_moved();
+  return true;
+}
+
 VolumeReport report_of(const VolumeCpu& volume) {
   VolumeReport r;
   r.grid = volume.grid().cells;
@@ -37,7 +44,7 @@ VolumeReport report_of(const VolumeCpu& volume) {
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : volume_(scene, options), gather_(size) {}
+      : scene_(scene), options_(options), volume_(scene, options), gather_(size) {}
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
@@ -50,6 +57,7 @@ class SidesOnCpu : public FrameVolume {
     }
     gather_.run(gbuffer, camera, voxels_, direct_, indirect_, timer);
   }
+  bool follow_scene() override { return follow(scene_, options_, volume_); }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
@@ -66,6 +74,8 @@ class SidesOnCpu : public FrameVolume {
     if (bytes > 0) buffer.upload(values.data(), bytes);
   }
 
+  const Scene& scene_;
+  VolumeOptions options_;
   VolumeCpu volume_;
   VoxelGridGl voxels_;
   gl::Buffer direct_, indirect_;
@@ -92,7 +102,8 @@ void upload_cells(const openvdb::Vec3SGrid& from, const openvdb::FloatGrid* four
 class PulseOnCpu : public FrameVolume {
  public:
   PulseOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : options_(options),
+      : scene_(scene),
+        options_(options),
         volume_(scene, options),
         radiance_(volume_.grid(), options.scheme.sh_order == 2 ? 9 : 4),
         normal_occupancy_(gl::Texture::make_3d(GL_RGBA32F, volume_.grid().cells)),
@@ -112,6 +123,7 @@ class PulseOnCpu : public FrameVolume {
     const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
     gather_.run(gbuffer, voxels_, radiance_, occupied_only ? &normal_occupancy_ : nullptr, timer);
   }
+  bool follow_scene() override { return follow(scene_, options_, volume_); }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
@@ -122,6 +134,7 @@ class PulseOnCpu : public FrameVolume {
   }
 
  private:
+  const Scene& scene_;
   VolumeOptions options_;
   VolumeCpu volume_;
   RadianceVolumeGl radiance_;

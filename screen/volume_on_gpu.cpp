@@ -27,6 +27,7 @@ class LitVoxels {
  public:
   LitVoxels(const Scene& scene, const VolumeOptions& options)
       : scene_(scene),
+        options_(options),
         voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
         emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
 
@@ -44,6 +45,13 @@ class LitVoxels {
     flux_.begin(voxels());
     if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.shadow);
     side_gather_->run(voxels(), first_bounce, flux_, timer);
+  }
+  /// @return false where the scene's bounds make another grid.
+  bool follow_scene() {
+    if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells), voxels().grid)) return false;
+    voxelization_.count_again();
+    emitters_ = emitter_pieces(scene_, voxels().grid);
+    return true;
   }
   const VoxelGridGl& voxels() const { return voxelization_.voxels(); }
   const SideFluxGl& flux() const { return flux_; }
@@ -65,6 +73,7 @@ class LitVoxels {
 
  private:
   const Scene& scene_;
+  VolumeOptions options_;
   SlicedVoxelization voxelization_;
   SideFluxGl flux_;
   InjectReflectiveShadowMap inject_;
@@ -76,7 +85,9 @@ class LitVoxels {
 class SidesOnGpu : public FrameVolume {
  public:
   SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : rules_(bounce_rules(options, largest_albedo(scene))),
+      : scene_(scene),
+        options_(options),
+        rules_(bounce_rules(options, largest_albedo(scene))),
         lit_(scene, options),
         bounces_(make_transport_gl(lit_.voxels().grid, options.scheme)),
         gather_(size) {}
@@ -92,6 +103,10 @@ class SidesOnGpu : public FrameVolume {
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
     gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), timer);
   }
+  bool follow_scene() override {
+    rules_ = bounce_rules(options_, largest_albedo(scene_));
+    return lit_.follow_scene();
+  }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
   VolumeReport report() const override {
@@ -101,6 +116,8 @@ class SidesOnGpu : public FrameVolume {
   }
 
  private:
+  const Scene& scene_;
+  VolumeOptions options_;
   BounceRules rules_;
   LitVoxels lit_;
   BouncesGl bounces_;
@@ -130,6 +147,7 @@ class PulseOnGpu : public FrameVolume {
     const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
     gather_.run(gbuffer, lit_.voxels(), pulse_.radiance(), occupied_only ? &cells_.normal_occupancy() : nullptr, timer);
   }
+  bool follow_scene() override { return lit_.follow_scene(); }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
   VolumeReport report() const override {

@@ -15,6 +15,9 @@ using shared::Grid;
 /// @throws Error(usage) when N < 1; Error(bad_input) when the scene has no triangles.
 Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells = glm::vec3(0.0f));
 
+inline bool same_grid(const Grid& a, const Grid& b) {
+  return a.cells == b.cells && a.origin == b.origin && a.cell_size_m == b.cell_size_m;
+}
 inline size_t cell_count(const Grid& g) { return size_t(g.cells.x) * size_t(g.cells.y) * size_t(g.cells.z); }
 
 }  // namespace volgi

@@ -46,6 +46,10 @@ struct Scratch {
   std::vector<std::uint16_t> amounts_touched;
 };
 
+inline size_t area_entry(int cell_b, int cell_c, int layer) {
+  return size_t(cell_b) + kLeafCells * (size_t(cell_c) + kLeafCells * size_t(layer));
+}
+
 class BlockMarker {
  public:
   BlockMarker(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
@@ -73,9 +77,21 @@ class BlockMarker {
   std::unique_ptr<BlockFaces> collect();
 
  private:
+  /// What is the same for all fragments of a flat triangle.
+  struct FlatFragments {
+    int local, sub_segment, layer;
+    float depth;
+  };
+
   template <int axis, bool may_pass>
   void slice(const SliceTriangle& t, std::uint32_t index, const Long3& n, const Window& window);
+  template <int axis>
+  void slice_flat(std::uint32_t index, const TriangleSlice<axis>& triangle, const Window& window, bool counts_area);
+  template <int axis>
+  void mark_cell(std::uint32_t index, const FlatFragments& all, int cell_b, int cell_c, std::uint32_t subs,
+                 bool counts_area);
   Window whole_window(int axis) const;
+  int layer_of(size_t at_segment, float depth, int axis) const;
   void mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub, std::uint32_t triangle) const;
   void count_area(std::uint32_t triangle, int axis);
 
@@ -96,7 +112,15 @@ Window BlockMarker::whole_window(int axis) const {
           kFine * last_cell(c) + kFine - 1, kFine * first_cell_[axis] - 1,    kFine * last_face + 1};
 }
 
-void BlockMarker::mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub, std::uint32_t triangle) const {
+/// The cell that a fragment's depth lies in, from one below the block on. Only the segment across a cell's lower face
+/// has a bit of two: the depth is needed for it alone.
+inline int BlockMarker::layer_of(size_t at_segment, float depth, int axis) const {
+  if (kTable.sub[at_segment] == 1) return int(depth + 1.0f) - first_cell_[axis];  // floor(depth) + 1: depth >= -1/2
+  return at_segment == 0 ? 0 : kTable.cell[at_segment - 1] + 1;
+}
+
+inline void BlockMarker::mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub,
+                                   std::uint32_t triangle) const {
   const float inside = glm::clamp(depth - float(i) + 0.5f, 0.0f, 1.0f);
   const std::uint32_t quantised = std::min(std::uint32_t(inside * float(depth_max_)), depth_max_ - 1);
   const std::uint64_t rest = (centre ? 0 : kOffCentre) | std::uint64_t(sub) << 32 | triangle;
@@ -114,6 +138,9 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
   std::optional<TriangleMaterial> material;
   if constexpr (may_pass) material.emplace(s_, t, n, axis, kLineFootprint);
   const TriangleSlice<axis> triangle(t, n);
+  if constexpr (!may_pass) {
+    if (triangle.flat()) return slice_flat<axis>(index, triangle, window, counts_area);
+  }
   triangle.fragments(window, [&](int column_b, int column_c, int k, std::int64_t numerator) {
     const size_t at_b = size_t(column_b - fine_b), at_c = size_t(column_c - fine_c);
     const size_t at_segment = size_t(k + 1 - first_segment);
@@ -129,7 +156,7 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
     if (!may_pass || stopped >= kOpaque) {
       face.fine_blocked |= 1u << (9 * kTable.sub[at_segment] + sub);
     } else if (centre) {
-      face.alpha_sum += std::max(std::uint32_t(-std::log(1.0f - stopped) * 65536.0f + 0.5f), 1u);
+      face.alpha_sum += std::max(std::uint32_t(std::lround(-std::log(1.0f - stopped) * 65536.0f)), 1u);
     }
     const int offset = int(&face - faces);
     float depth = -1.0f;  // not known
@@ -139,21 +166,73 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
       mark_keys(face, depth, first_cell_[axis] + local, centre, sub, index);
     }
     if (!counts_area) return;
-    // The cell that the depth lies in: only the segment across a cell's lower face has a bit of two.
-    int layer = at_segment == 0 ? 0 : kTable.cell[at_segment - 1] + 1;
-    if (kTable.sub[at_segment] == 1) {
-      if (depth == -1.0f) depth = float(triangle.depth(numerator));
-      layer = int(depth + 1.0f) - first_cell_[axis];  // floor(depth) + 1: depth is at least -1/2
-    }
-    const auto entry = size_t(cell_b + kLeafCells * (cell_c + kLeafCells * layer));
+    if (depth == -1.0f && kTable.sub[at_segment] == 1) depth = float(triangle.depth(numerator));
+    const int layer = layer_of(at_segment, depth, axis);
+    const size_t entry = area_entry(cell_b, cell_c, layer);
     std::uint32_t& amount = scratch_.amount[entry];
     if (amount == 0) {
       scratch_.amounts_touched.push_back(std::uint16_t(entry));
       scratch_.depth[entry] = depth == -1.0f ? float(triangle.depth(numerator)) : depth;
     }
-    amount += (std::uint32_t(stopped * kStoppedUnit + 0.5f) << kStoppedShift) + (1u << sub);
+    amount += (std::uint32_t(std::lround(stopped * kStoppedUnit)) << kStoppedShift) + (1u << sub);
   });
   if (counts_area) count_area(index, axis);
+}
+
+/// The same for what lies across the axis, as most surfaces of buildings do: a cell's fragments at once.
+template <int axis>
+void BlockMarker::slice_flat(std::uint32_t index, const TriangleSlice<axis>& triangle, const Window& window,
+                             bool counts_area) {
+  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
+  const int fine_b = kFine * first_cell_[b], fine_c = kFine * first_cell_[c];
+  FlatFragments all{};
+  std::uint32_t columns[kBlockColumns] = {};  // by row: bits of those with fragments
+  std::uint32_t rows = 0;
+  const auto begin = [&](int k, std::int64_t numerator) {
+    const size_t at_segment = size_t(k + 1 - kFine * first_cell_[axis]);
+    all.local = kTable.cell[at_segment];
+    all.sub_segment = kTable.sub[at_segment];
+    all.depth = float(triangle.depth(numerator));
+    all.layer = layer_of(at_segment, all.depth, axis);
+  };
+  triangle.flat_rows(window, begin, [&](int first, int last, int column_c) {
+    columns[column_c - fine_c] = (2u << (last - fine_b)) - (1u << (first - fine_b));
+    rows |= 1u << (column_c - fine_c);
+  });
+  for (int cell_c = 0; rows >> (kFine * cell_c) != 0; ++cell_c) {
+    const std::uint32_t* of_cell = columns + kFine * cell_c;
+    static_assert(kFine == 3);
+    for (std::uint32_t rest = of_cell[0] | of_cell[1] | of_cell[2]; rest != 0;) {
+      const int cell_b = kTable.cell[std::countr_zero(rest)], shift = kFine * cell_b;
+      const std::uint32_t subs =
+          (of_cell[0] >> shift & 7u) | (of_cell[1] >> shift & 7u) << 3 | (of_cell[2] >> shift & 7u) << 6;
+      mark_cell<axis>(index, all, cell_b, cell_c, subs, counts_area);
+      rest &= ~(7u << shift);
+    }
+  }
+  if (counts_area) count_area(index, axis);
+}
+
+template <int axis>
+void BlockMarker::mark_cell(std::uint32_t index, const FlatFragments& all, int cell_b, int cell_c, std::uint32_t subs,
+                            bool counts_area) {
+  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
+  constexpr std::uint32_t kCentre = 1u << 4;
+  const int offset = cell_b * kOffsetStep[b] + cell_c * kOffsetStep[c] + all.local * kOffsetStep[axis];
+  MarkedFace& face = scratch_.faces[axis][size_t(offset)];
+  face.fine_blocked |= subs << (9 * all.sub_segment);
+  // At the same depth the centre's key comes first, then that of the lowest sub-column.
+  const bool centre = (subs & kCentre) != 0;
+  if (centre || face.low >= kOffCentre) {
+    if (face.low == kNoKey) scratch_.active[axis][size_t(offset >> 6)] |= std::uint64_t(1) << (offset & 63);
+    mark_keys(face, all.depth, first_cell_[axis] + all.local, centre, centre ? 4 : std::countr_zero(subs), index);
+  }
+  if (!counts_area) return;
+  const size_t entry = area_entry(cell_b, cell_c, all.layer);
+  scratch_.amounts_touched.push_back(std::uint16_t(entry));
+  scratch_.depth[entry] = all.depth;
+  const auto stopped = std::uint32_t(kStoppedUnit) << kStoppedShift;
+  scratch_.amount[entry] = std::uint32_t(std::popcount(subs)) * stopped + subs;
 }
 
 /// Turns what was counted of one triangle into records.

@@ -21,8 +21,9 @@ namespace volgi::slicing {
 constexpr int kFine = 3;
 constexpr int kNodeShift = 7;
 constexpr std::int64_t kNodeStep = 1 << kNodeShift;
+constexpr std::int64_t kHalfNodeStep = kNodeStep / 2;
 static_assert(kFine * kNodeStep == SLICE_STEPS);
-constexpr std::int64_t node_position(std::int64_t k) { return k * kNodeStep + kNodeStep / 2; }
+constexpr std::int64_t node_position(std::int64_t k) { return k * kNodeStep + kHalfNodeStep; }
 
 constexpr float kOpaque = 0.999f;  // what stops as much stops everything (slice.frag.glsl)
 
@@ -58,7 +59,7 @@ struct FineBox {
 inline FineBox fine_box(const SliceTriangle& t) {
   const glm::ivec3 low = glm::min(glm::min(t.vertex[0], t.vertex[1]), t.vertex[2]);
   const glm::ivec3 high = glm::max(glm::max(t.vertex[0], t.vertex[1]), t.vertex[2]);
-  constexpr int kHalf = int(kNodeStep / 2);
+  constexpr int kHalf = int(kHalfNodeStep);
   return {(low - kHalf + int(kNodeStep) - 1) >> kNodeShift, (high - kHalf) >> kNodeShift};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Exact scan conversion of a triangle at the fine columns of one block.
 #include <algorithm>
+#include <array>
 
 #include "voxel/slice_internal.h"
 
@@ -10,6 +11,7 @@ namespace volgi::slicing {
 struct Window {
   int first_b, last_b, first_c, last_c;
   int first_k, last_k;
+  bool holds_all_k = false;  // no fragment of the triangle is outside them
 };
 
 /// What of a window the triangle's bounds hold; false when that is nothing.
@@ -20,6 +22,7 @@ inline bool cut(Window& w, const FineBox& box, int axis) {
   w.first_c = std::max(w.first_c, box.first[c]);
   w.last_c = std::min(w.last_c, box.last[c]);
   // The first node above a point may be that after the last in the bounds.
+  w.holds_all_k = w.first_k <= box.first[axis] && box.last[axis] + 1 <= w.last_k;
   return w.first_b <= w.last_b && w.first_c <= w.last_c && box.first[axis] <= w.last_k &&
          box.last[axis] + 1 >= w.first_k;
 }
@@ -55,16 +58,62 @@ class TriangleSlice {
 
   /// Depth along the axis, cell units.
   double depth(std::int64_t numerator) const {
-    return double(numerator + n_axis_ * (kNodeStep / 2) - tie_) / (double(n_axis_) * SLICE_STEPS);
+    return double(numerator + n_axis_ * kHalfNodeStep - tie_) / (double(n_axis_) * SLICE_STEPS);
   }
+
+  /// Whether the triangle's plane lies across the axis: all fragments have the same k and numerator.
+  bool flat() const { return n_axis_ != 0 && n_b_ == 0 && n_c_ == 0; }
 
   /// Calls visit(fine_b, fine_c, k, numerator) for every fragment in the window, which lies within the triangle's
   /// bounds; k is the first node above the surface.
   template <class Visit>
   void fragments(const Window& w, Visit&& visit) const {
     if (n_axis_ == 0) return;
-    const int columns_b = w.last_b - w.first_b + 1, columns_c = w.last_c - w.first_c + 1;
     const HalfPlane start = numerator_at(w);
+    const std::int64_t divisor = kNodeStep * n_axis_;
+    const double per_divisor = 1.0 / double(divisor);
+    const Quotient step = divide(start.step_b, divisor, per_divisor);
+    rows(w, start, [&](int j, int first, int last) {
+      std::int64_t numerator = start.value + j * start.step_c + first * start.step_b;
+      Quotient q = divide(numerator + divisor - 1, divisor, per_divisor);
+      for (int i = first;; ++i) {
+        visit(w.first_b + i, w.first_c + j, int(q.whole), numerator);
+        if (i == last) break;
+        numerator += start.step_b;
+        q.whole += step.whole;
+        q.rest += step.rest;
+        if (q.rest >= divisor) {
+          q.rest -= divisor;
+          ++q.whole;
+        }
+      }
+    });
+  }
+
+  /// Where fragments of a flat triangle lie: calls visit(first_b, last_b, fine_c) for the rows of columns that have
+  /// any, and before the first of them begin(k, numerator).
+  template <class Begin, class Visit>
+  void flat_rows(const Window& w, Begin&& begin, Visit&& visit) const {
+    const HalfPlane start = numerator_at(w);
+    const std::int64_t divisor = kNodeStep * n_axis_;
+    bool begun = false;
+    rows(w, start, [&](int j, int first, int last) {
+      if (!begun) begin(int(divide(start.value + divisor - 1, divisor, 1.0 / double(divisor)).whole), start.value);
+      begun = true;
+      visit(w.first_b + first, w.first_b + last, w.first_c + j);
+    });
+  }
+
+ private:
+  struct Quotient {
+    std::int64_t whole, rest;
+  };
+
+  /// Calls visit(j, first, last) for the rows of the window that have fragments: in their columns first ... last.
+  /// @param start  numerator_at(w)
+  template <class Visit>
+  void rows(const Window& w, const HalfPlane& start, Visit&& visit) const {
+    const int columns_b = w.last_b - w.first_b + 1, columns_c = w.last_c - w.first_c + 1;
     const std::int64_t divisor = kNodeStep * n_axis_;
     std::array<HalfPlane, 5> planes;
     size_t count = 0;
@@ -73,39 +122,20 @@ class TriangleSlice {
       if (h.least(columns_b, columns_c) < 0) planes[count++] = h;
       return true;
     };
-    if (!add({start.value - divisor * (w.first_k - 1) - 1, start.step_b, start.step_c})) return;
-    if (!add({divisor * w.last_k - start.value, -start.step_b, -start.step_c})) return;
+    if (!w.holds_all_k) {
+      if (!add({start.value - divisor * (w.first_k - 1) - 1, start.step_b, start.step_c})) return;
+      if (!add({divisor * w.last_k - start.value, -start.step_b, -start.step_c})) return;
+    }
     for (size_t edge = 0; edge < 3; ++edge) {
       if (!add(edge_plane(edge, w))) return;
     }
-    const double per_divisor = 1.0 / double(divisor);
-    const Quotient step = divide(start.step_b, divisor, per_divisor);
     for (int j = 0; j < columns_c; ++j) {
       int first = 0, last = columns_b - 1;
       for (size_t p = 0; p < count; ++p) narrow(planes[p], first, last);
-      if (first <= last) {
-        std::int64_t numerator = start.value + j * start.step_c + first * start.step_b;
-        Quotient q = divide(numerator + divisor - 1, divisor, per_divisor);
-        for (int i = first;; ++i) {
-          visit(w.first_b + i, w.first_c + j, int(q.whole), numerator);
-          if (i == last) break;
-          numerator += start.step_b;
-          q.whole += step.whole;
-          q.rest += step.rest;
-          if (q.rest >= divisor) {
-            q.rest -= divisor;
-            ++q.whole;
-          }
-        }
-      }
+      if (first <= last) visit(j, first, last);
       for (size_t p = 0; p < count; ++p) planes[p].value += planes[p].step_c;
     }
   }
-
- private:
-  struct Quotient {
-    std::int64_t whole, rest;
-  };
 
   /// Floor and remainder. The estimate is at most one off while the quotient is under 2^52.
   static Quotient divide(std::int64_t x, std::int64_t divisor, double per_divisor) {
@@ -120,7 +150,7 @@ class TriangleSlice {
   /// adds.
   HalfPlane numerator_at(const Window& w) const {
     const glm::ivec3 v = t_.vertex[0];
-    return {n_axis_ * (v[axis_] - kNodeStep / 2) - n_b_ * (node_position(w.first_b) - v[b_]) -
+    return {n_axis_ * (v[axis_] - kHalfNodeStep) - n_b_ * (node_position(w.first_b) - v[b_]) -
                 n_c_ * (node_position(w.first_c) - v[c_]) + tie_,
             -kNodeStep * n_b_, -kNodeStep * n_c_};
   }

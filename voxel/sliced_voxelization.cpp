@@ -90,7 +90,7 @@ void SlicedVoxelization::run_axes(const gl::SceneBuffers& scene, gl::PassTimer& 
   {
     auto scope = timer.scope("voxel/slice");
     mark(scene, first_axis, last_axis);
-    if (counted_->pending() > 0) counted_->pop(&wanted_);  // the run before
+    count_surfaces(first_axis, last_axis);
     for (int axis = first_axis; axis <= last_axis; ++axis) {
       make_room_for_surfaces(axis);
       number_surfaces(axis);
@@ -147,14 +147,18 @@ void SlicedVoxelization::raster(const gl::SceneBuffers& scene, const gl::Program
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+/// How many surfaces and sides there are, as far as is known: from the run before, unless this one is to wait.
+void SlicedVoxelization::count_surfaces(int first_axis, int last_axis) {
+  if (counted_->pending() > 0) counted_->pop(&wanted_);
+  if (!count_and_wait_) return;
+  for (int axis = first_axis; axis <= last_axis; ++axis) number_surfaces(axis);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  wanted_buffer_.download(wanted_.data(), sizeof(Wanted));
+}
+
 void SlicedVoxelization::make_room_for_surfaces(int axis) {
   Family& f = families_[size_t(axis)];
-  if (f.capacity == 0) {  // the first run counts, and waits
-    number_surfaces(axis);
-    wanted_buffer_.download(wanted_.data(), sizeof(Wanted));
-  } else if (wanted_[size_t(axis)] <= f.capacity) {
-    return;
-  }
+  if (f.capacity > 0 && wanted_[size_t(axis)] <= f.capacity) return;
   f.capacity = with_headroom(wanted_[size_t(axis)]);
   f.surfaces = gl::Buffer(kSurfaceBytes * size_t(f.capacity));
 }
@@ -211,12 +215,12 @@ void SlicedVoxelization::list_sides() {
 }
 
 void SlicedVoxelization::make_room_for_sides() {
-  if (voxels_.side_capacity == 0) {
+  if (count_and_wait_) {
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     wanted_buffer_.download(wanted_.data(), sizeof(Wanted));
-  } else if (wanted_[3] <= voxels_.side_capacity) {
-    return;
+    count_and_wait_ = false;
   }
+  if (voxels_.side_capacity > 0 && wanted_[3] <= voxels_.side_capacity) return;
   voxels_.side_capacity = with_headroom(wanted_[3]);
   voxels_.sides = gl::Buffer(sizeof(shared::Side) * size_t(voxels_.side_capacity));
   area_fixed_ = gl::Buffer(sizeof(std::uint32_t) * size_t(voxels_.side_capacity));

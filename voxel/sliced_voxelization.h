@@ -36,6 +36,9 @@ class SlicedVoxelization {
   /// Voxelizes the scene. Only the first run waits for the number of sides. A later one with a fifth more sides than
   /// there is room for leaves some out of that frame, though what is closed stays closed; the next one makes room.
   void run(const gl::SceneBuffers& scene, gl::PassTimer& timer);
+  /// The next run waits for the number of sides as the first one does: a scene that has moved gets all of its sides,
+  /// those that a new object would find.
+  void count_again() { count_and_wait_ = true; }
   /// Interleaved: slices along one axis only and keeps what earlier runs found along the others. Three runs, one for
   /// each axis, over a scene at rest end as one full run does. The first run, and any of a single_pass, is a full one.
   void run(const gl::SceneBuffers& scene, gl::PassTimer& timer, int axis);
@@ -66,6 +69,7 @@ class SlicedVoxelization {
   void list_sides();
   void fill_sides();
   void count_area(const gl::SceneBuffers& scene);
+  void count_surfaces(int first_axis, int last_axis);
   void make_room_for_surfaces(int axis);
   void make_room_for_sides();
 
@@ -82,6 +86,7 @@ class SlicedVoxelization {
   std::unique_ptr<gl::Readback> counted_;  // Wanted of earlier frames
   Wanted wanted_{};
   int groups_ = 0;
+  bool count_and_wait_ = true;
   bool alpha_ = false;  // some material cuts or covers in part
 };
 

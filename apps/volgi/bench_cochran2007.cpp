@@ -6,55 +6,18 @@
 #include <array>
 #include <cmath>
 
-#include "core/error.h"
-#include "screen/frame.h"
-#include "screen/image_from_texture.h"
+#include "apps/volgi/repeated_frame.h"
 
 namespace volgi::app {
 
 namespace {
 
-/// A picture that is rendered again and again.
-class Repeated {
- public:
-  Repeated(const Scene& scene, const gl::Context& context, const screen::FrameOptions& options)
-      : camera_(scene.cameras[0]), frame_(scene, options), timer_(context.software(), true) {}
-
-  void render() {
-    timer_.begin_frame();
-    frame_.render(camera_, timer_);
-    timer_.end_frame();
-  }
-  void forget_warm_up() { timer_.reset(); }
-  Image image() const { return screen::image_from_texture(frame_.radiance()); }
-  float coarse_share() const { return frame_.report().coarse_share; }
-  double frame_ms() const { return timer_.frame_time().median_ms; }
-  /// Of the passes that make light of virtual lights: gather and discontinuity.
-  double gather_ms() {
-    double sum = 0.0;
-    for (const auto& pass : timer_.medians()) {
-      if (pass.name == screen::VirtualLightGather::name || pass.name == screen::VirtualLightGather::discontinuity_name)
-        sum += pass.gpu_ms;
-    }
-    return sum;
-  }
-
- private:
-  const Camera& camera_;
-  screen::Frame frame_;
-  gl::PassTimer timer_;
-};
-
-/// Frames of several pictures in turn, so that what else the machine does meets all alike.
-void render_in_turn(std::initializer_list<Repeated*> pictures, int frames) {
-  constexpr int kWarmUp = 2;
-  for (int f = 0; f < kWarmUp + frames; ++f) {
-    for (Repeated* picture : pictures) {
-      if (f == kWarmUp) picture->forget_warm_up();
-      picture->render();
-    }
-  }
+/// Of the passes that make light of virtual lights.
+double gather_ms(RepeatedFrame& picture) {
+  return picture.passes_ms({screen::VirtualLightGather::name, screen::VirtualLightGather::discontinuity_name});
 }
+
+double coarse_share(const RepeatedFrame& picture) { return double(picture.frame().report().coarse_share); }
 
 /// Root mean square of the difference, in percent of the reference's largest value.
 double rms_percent_of_range(const Image& reference, const Image& image) {
@@ -94,14 +57,14 @@ constexpr std::array<ShareRow, 4> kShares{
 nlohmann::json lights_table(const Scene& scene, const gl::Context& context, int frames) {
   nlohmann::json rows = nlohmann::json::array();
   for (const LightsRow& row : kLights) {
-    Repeated picture(scene, context, options_of(row.vpls, row.negative));
-    render_in_turn({&picture}, frames);
+    RepeatedFrame picture(scene, context, options_of(row.vpls, row.negative));
+    picture.render_repeatedly(frames);
     rows.push_back({{"vpls", row.vpls},
                     {"negative", row.negative},
                     {"paper_fps", row.fps},
                     {"frame_ms", picture.frame_ms()},
-                    {"gather_ms", picture.gather_ms()},
-                    {"coarse_share", picture.coarse_share()}});
+                    {"gather_ms", gather_ms(picture)},
+                    {"coarse_share", coarse_share(picture)}});
   }
   return rows;
 }
@@ -111,9 +74,9 @@ double contrast_for(const Scene& scene, const gl::Context& context, screen::Fram
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 12; ++i) {
     options.gather.contrast = float(0.5 * (low + high));
-    Repeated picture(scene, context, options);
+    RepeatedFrame picture(scene, context, options);
     picture.render();
-    const float reached = picture.coarse_share();
+    const double reached = coarse_share(picture);
     (reached < share ? low : high) = 0.5 * (low + high);
   }
   return high;
@@ -125,14 +88,14 @@ nlohmann::json share_table(const Scene& scene, const gl::Context& context, int f
   full.gather.stride = 1;
   nlohmann::json rows = nlohmann::json::array();
   const auto add = [&](const std::string& what, const screen::FrameOptions& o, const ShareRow* paper) {
-    Repeated every_pixel(scene, context, full), picture(scene, context, o);
+    RepeatedFrame every_pixel(scene, context, full), picture(scene, context, o);
     render_in_turn({&every_pixel, &picture}, frames);
     nlohmann::json row = {{"what", what},
-                          {"coarse_share", picture.coarse_share()},
+                          {"coarse_share", coarse_share(picture)},
                           {"rms_percent", rms_percent_of_range(every_pixel.image(), picture.image())},
                           {"frame_ms", picture.frame_ms()},
-                          {"gather_ms", picture.gather_ms()},
-                          {"gather_speedup", every_pixel.gather_ms() / picture.gather_ms()}};
+                          {"gather_ms", gather_ms(picture)},
+                          {"gather_speedup", gather_ms(every_pixel) / gather_ms(picture)}};
     if (paper != nullptr)
       row["paper"] = {{"share", paper->share}, {"rms_percent", paper->rms_percent}, {"fps", paper->fps}};
     rows.push_back(std::move(row));
@@ -161,8 +124,6 @@ nlohmann::json share_table(const Scene& scene, const gl::Context& context, int f
 }  // namespace
 
 nlohmann::json bench_cochran2007(const Scene& scene, const gl::Context& context, int frames) {
-  if (scene.cameras.empty())
-    throw Error(ExitCode::bad_input, scene.path.string() + ": a benchmark scene needs a camera");
   return {{"scene", scene.name},
           {"triangles", scene.triangle_count()},
           {"device", context.device_name()},

@@ -2,18 +2,23 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 
+#include "apps/volgi/bench_against_path_tracing.h"
 #include "apps/volgi/bench_cochran2007.h"
 #include "apps/volgi/bench_conservative.h"
+#include "apps/volgi/bench_dong2009.h"
 #include "apps/volgi/bench_propagation.h"
 #include "apps/volgi/bench_voxelize.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/frame_stats.h"
+#include "apps/volgi/repeated_frame.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/log.h"
+#include "core/scene_source.h"
 #include "propagation/volume_cpu.h"
 #include "screen/frame.h"
 
@@ -21,12 +26,21 @@ namespace volgi::app {
 
 namespace {
 
+std::filesystem::path temporary_folder() {
+  std::error_code none;  // then the current one
+  return std::filesystem::temp_directory_path(none);
+}
+
 struct BenchCommand {
   std::vector<std::string> names;
   std::filesystem::path data = "data";
   std::filesystem::path generated = "build/release/data";
+  std::filesystem::path cache = temporary_folder() / "volgi_references";
+  std::vector<std::string> scenes;  // none: those that the benchmark speaks of
   int frames = 5;
-  int size = 512;
+  std::optional<int> size;  // none: each benchmark's own
+  std::vector<int> curve_lights = Dong2009Options{}.curve_lights;
+  int reference_spp = AgainstPathTracingOptions{}.reference_spp;
   int grid_cells = 32;
   int iterations = 64;
   bool json = false;
@@ -35,10 +49,14 @@ struct BenchCommand {
   int largest_grid = 128;
 
   int run() const;
-  int run_frames(nlohmann::json& results) const;
+  void run_frames(nlohmann::json& results) const;
   void run_propagation(nlohmann::json& results) const;
   void run_voxelize(nlohmann::json& results) const;
   void run_cochran2007(nlohmann::json& results) const;
+  void run_dong2009(nlohmann::json& results) const;
+  void run_against_path_tracing(nlohmann::json& results) const;
+  std::vector<std::string> scenes_or(std::vector<std::string> usual) const { return scenes.empty() ? usual : scenes; }
+  void show(const std::string& table) const;
   Scene scene(const std::string& name) const;
   nlohmann::json bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const;
 };
@@ -46,24 +64,16 @@ struct BenchCommand {
 /// `conservative` runs the number of passes asked for, as the papers' tables have it; `ordinates` all bounces.
 nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const {
   const Scene scene = this->scene(name);
-  if (scene.cameras.empty())
-    throw Error(ExitCode::bad_input, scene.path.string() + ": a benchmark scene needs a camera");
   screen::FrameOptions options;
-  options.size = {size, size};
+  options.size = glm::ivec2(size.value_or(512));
   options.volume.grid_cells = grid_cells;
   options.volume.scheme.scheme = scheme;
   options.backend = screen::Backend::gpu;
   if (scheme == Scheme::conservative) options.volume.iterations = iterations;
-  screen::Frame frame(scene, options);
-  gl::PassTimer timer(context.software(), true);
-  constexpr int kWarmUp = 2;
-  for (int f = 0; f < kWarmUp + frames; ++f) {
-    if (f == kWarmUp) timer.reset();
-    timer.begin_frame();
-    frame.render(scene.cameras[0], timer);
-    timer.end_frame();
-  }
-  auto stats = frame_stats(scene.name, "volume", options.size, context, timer, frames, frame.report());
+  RepeatedFrame picture(scene, context, options);
+  picture.render_repeatedly(frames);
+  auto stats =
+      frame_stats(scene.name, "volume", options.size, context, picture.timer(), frames, picture.frame().report());
   for (const auto& pass : stats["passes"]) {
     if (pass["name"] == "propagation/propagate")
       stats["iteration_ms"] = pass["gpu_ms"].get<double>() / stats["iterations"].get<double>();
@@ -71,25 +81,32 @@ nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme,
   return stats;
 }
 
-int BenchCommand::run_frames(nlohmann::json& results) const {
+void BenchCommand::run_frames(nlohmann::json& results) const {
   gl::Context context(device);
-  for (const char* name : {"cornell", "atrium"}) {
+  for (const std::string& name : scenes_or({"cornell", "atrium"})) {
     for (auto scheme : {Scheme::conservative, Scheme::ordinates}) {
       nlohmann::json r = bench_frame(name, scheme, context);
       r["scheme"] = scheme_name(scheme);
       if (!json) {
-        fmt::print("{} {}x{}, {}, {} ({} timer)\n{}", name, size, size, scheme_name(scheme), context.device_name(),
-                   r["timer"].get<std::string>(), pass_table(r));
+        fmt::print("{} {}x{}, {}, {} ({} timer)\n{}", name, r["size"][0].get<int>(), r["size"][1].get<int>(),
+                   scheme_name(scheme), context.device_name(), r["timer"].get<std::string>(), pass_table(r));
         if (r.contains("iteration_ms"))
           fmt::print("  one pass over the volume {:.2f} ms\n", r["iteration_ms"].get<double>());
       }
       results["frame"].push_back(std::move(r));
     }
   }
-  return int(ExitCode::done);
+}
+
+// At once: the next may take long.
+void BenchCommand::show(const std::string& table) const {
+  if (json) return;
+  fmt::print("{}", table);
+  std::fflush(stdout);
 }
 
 Scene BenchCommand::scene(const std::string& name) const {
+  if (name.starts_with(SceneSource::kBuiltInPrefix)) return load_scene(name);
   std::filesystem::path path = data / (name + ".glb");
   if (!std::filesystem::exists(path)) path = generated / (name + ".glb");
   return load_scene(path);
@@ -134,21 +151,59 @@ void BenchCommand::run_cochran2007(nlohmann::json& results) const {
   if (!json) fmt::print("{}", cochran2007_table(r));
 }
 
-int BenchCommand::run() const {
-  const std::vector<std::string> all = {"frame", "propagation", "voxelize", "cochran2007"};
-  for (const std::string& name : names) {
-    if (std::find(all.begin(), all.end(), name) == all.end())
-      throw Error(ExitCode::usage,
-                  "no benchmark '" + name + "'; there are: " + fmt::format("{}", fmt::join(all, ", ")));
+void BenchCommand::run_dong2009(nlohmann::json& results) const {
+  const gl::Context context(device);
+  Dong2009Options options;
+  options.scenes = options.curve_scenes = scenes;
+  options.size = size.value_or(options.size);
+  options.curve_size = size.value_or(options.curve_size);
+  options.frames = frames;
+  options.curve_lights = curve_lights;
+  options.one_bounce = data / "references" / "one_bounce";
+  nlohmann::json& r = results["dong2009"];
+  r = bench_dong2009([this](const std::string& name) { return scene(name); }, context, options,
+                     [this](const std::string& table) { show(table); });
+}
+
+void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
+  const gl::Context context(device);
+  AgainstPathTracingOptions options;
+  options.size = size.value_or(options.size);
+  options.frames = frames;
+  options.reference_spp = reference_spp;
+  options.cache = cache;
+  for (const std::string& name : scenes_or({"cornell", "room", "atrium"})) {
+    nlohmann::json r = bench_against_path_tracing(scene(name), context, options);
+    show(against_path_tracing_table(r));
+    results["against-path-tracing"].push_back(std::move(r));
   }
-  const auto wanted = [&](const char* name) {
-    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-  };
+}
+
+struct Benchmark {
+  const char* name;
+  void (BenchCommand::*run)(nlohmann::json&) const;
+};
+constexpr Benchmark kBenchmarks[] = {
+    {"frame", &BenchCommand::run_frames},      {"propagation", &BenchCommand::run_propagation},
+    {"voxelize", &BenchCommand::run_voxelize}, {"cochran2007", &BenchCommand::run_cochran2007},
+    {"dong2009", &BenchCommand::run_dong2009}, {"against-path-tracing", &BenchCommand::run_against_path_tracing}};
+
+std::string benchmark_names() {
+  std::vector<const char*> names;
+  for (const Benchmark& benchmark : kBenchmarks) names.push_back(benchmark.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+int BenchCommand::run() const {
+  for (const std::string& name : names) {
+    if (std::none_of(std::begin(kBenchmarks), std::end(kBenchmarks), [&](const auto& b) { return b.name == name; }))
+      throw Error(ExitCode::usage, "no benchmark '" + name + "'; there are: " + benchmark_names());
+  }
   nlohmann::json results;
-  if (wanted("frame")) run_frames(results);
-  if (wanted("propagation")) run_propagation(results);
-  if (wanted("voxelize")) run_voxelize(results);
-  if (wanted("cochran2007")) run_cochran2007(results);
+  for (const Benchmark& benchmark : kBenchmarks) {
+    if (names.empty() || std::find(names.begin(), names.end(), benchmark.name) != names.end())
+      (this->*benchmark.run)(results);
+  }
   if (json) fmt::print("{}\n", results.dump(1));
   return int(ExitCode::done);
 }
@@ -160,15 +215,29 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "bench",
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
-      "time the CPU's volume against copying memory and OpenVDB; 'cochran2007' repeats that paper's tables");
-  command->add_option("NAME", options->names, "benchmarks to run: frame, propagation, voxelize, cochran2007 (all)");
+      "time the CPU's volume against copying memory and OpenVDB; 'cochran2007' and 'dong2009' repeat those papers' "
+      "tables and curve; 'against-path-tracing' tells how long path tracing takes to the error of --gi hybrid");
+  command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
   command->add_option("--data", options->data, "folder of cornell.glb")->capture_default_str();
   command->add_option("--generated", options->generated, "folder of atrium.glb")->capture_default_str();
   command->add_option("--frames", options->frames, "frames measured, after two warm-up frames")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--size", options->size, "pixels on each side")
-      ->check(CLI::Range(16, 8192))
+  command->add_option("--size", options->size, "pixels on each side [512; dong2009: 800, its curve 192]")
+      ->check(CLI::Range(16, 8192));
+  command
+      ->add_option("--scene", options->scenes,
+                   "scenes by name, of frame, dong2009 and against-path-tracing [their own]")
+      ->type_name("NAME");
+  command->add_option("--curve-vpls", options->curve_lights, "dong2009: numbers of virtual lights of its curve")
+      ->check(CLI::Range(2, 65536))
+      ->capture_default_str();
+  command->add_option("--reference-spp", options->reference_spp, "against-path-tracing: samples of its reference")
+      ->check(CLI::Range(2, 1 << 24))
+      ->capture_default_str();
+  command
+      ->add_option("--cache", options->cache,
+                   "folder that keeps the references of against-path-tracing; empty it when the path tracer changes")
       ->capture_default_str();
   command->add_option("--grid", options->grid_cells, "cells along the longest axis")
       ->check(CLI::Range(1, VolumeOptions::kMostGridCells))

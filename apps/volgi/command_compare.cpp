@@ -5,10 +5,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/metrics_json.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image.h"
 #include "core/log.h"
@@ -105,36 +108,6 @@ std::vector<std::string> broken_limits(const CompareOptions& options, const Metr
   return broken;
 }
 
-void put(nlohmann::ordered_json& json, const char* key, const std::optional<double>& value) {
-  if (value) json[key] = *value;
-}
-
-// Keys as compare.py has them.
-nlohmann::ordered_json to_json(const Metrics& m) {
-  nlohmann::ordered_json json{{"pixels", m.pixels}, {"nonfinite", m.nonfinite}, {"negative", m.negative}};
-  if (m.pixels == 0) return json;
-  json["ref_mean"] = m.ref_mean;
-  json["test_mean"] = m.test_mean;
-  json["test_max"] = m.test_max;
-  json["mean_absolute"] = m.mean_absolute;
-  json["max_absolute"] = m.max_absolute;
-  if (!m.relative) return json;
-  const Metrics::Relative& r = *m.relative;
-  json["ratio"] = r.ratio;
-  json["ratio_rgb"] = r.ratio_rgb;
-  json["rmse_pct"] = r.rmse_pct;
-  put(json, "rmse_pct_denoised", r.rmse_pct_denoised);
-  json["relmse"] = r.relmse;
-  put(json, "relmse_denoised", r.relmse_denoised);
-  json["p95_percent"] = r.p95_percent;
-  put(json, "blk_pct", r.blk_pct);
-  put(json, "blkmax_pct", r.blkmax_pct);
-  put(json, "blkbias_pct", r.blkbias_pct);
-  json["scale"] = r.scale;
-  json["ssim"] = r.ssim;  // null when there is no figure
-  return json;
-}
-
 std::string cell(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
@@ -161,6 +134,31 @@ std::string table_row(const Metrics& m, const std::string& name) {
   return row + "\n";
 }
 
+// Where the map of a test goes: --diff itself, or for several tests a file of the test's name in that folder.
+std::filesystem::path map_path(const CompareOptions& options, const std::filesystem::path& test) {
+  return options.tests.size() == 1 ? options.diff : options.diff / (test.stem().string() + ".png");
+}
+
+void check_maps(const CompareOptions& options) {
+  if (options.diff.empty()) return;
+  std::set<std::filesystem::path> maps;
+  for (const std::filesystem::path& test : options.tests) {
+    if (!maps.insert(map_path(options, test)).second)
+      throw Error(ExitCode::usage,
+                  fmt::format("--diff {}: two pictures are called {}, and their maps would be one file",
+                              options.diff.string(), test.stem().string()));
+  }
+  if (options.tests.size() > 1) {
+    std::error_code error;
+    std::filesystem::create_directories(options.diff, error);
+    if (error)
+      throw Error(ExitCode::cannot_write,
+                  fmt::format("--diff {}: cannot make this folder for the maps of {} pictures: {}",
+                              options.diff.string(), options.tests.size(), error.message()));
+  }
+  for (const std::filesystem::path& map : maps) check_writable(map);
+}
+
 Image test_picture(const std::filesystem::path& path, const CompareOptions& options, const Image& reference) {
   try {
     return box_downsample(read_test(path, light_from_name(options.light)), reference.width, reference.height);
@@ -172,6 +170,7 @@ Image test_picture(const std::filesystem::path& path, const CompareOptions& opti
 
 int compare(const CompareOptions& options) {
   if (options.energy) parse_range(*options.energy);
+  check_maps(options);
   const ReferenceFile reference = read_reference(options.reference, light_from_name(options.light));
   const Region region = region_asked_for(options, reference);
   const Mask mask = reference.layers ? region_mask(region, *reference.layers) : Mask(reference.color.pixels.size(), 1);
@@ -189,7 +188,7 @@ int compare(const CompareOptions& options) {
     json["failed"] = broken;
     results.push_back(json);
     table += table_row(m, path.string());
-    if (!options.diff.empty()) write_png_display(options.diff, error_map(reference.color, test, mask));
+    if (!options.diff.empty()) write_png_display(map_path(options, path), error_map(reference.color, test, mask));
   }
   if (options.json)
     std::cout << results.dump(1) << '\n';
@@ -223,7 +222,10 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"full", "direct", "indirect"}))
       ->capture_default_str();
   command.add_flag("--json", options->json, "print an array of objects instead of a table");
-  command.add_option("--diff", options->diff, "write a map of the signed relative error, saturated at 50 % (one TEST)");
+  command.add_option(
+      "--diff", options->diff,
+      "write a map of the signed relative error with its colour bar, saturated at 50 %; a PNG file, or for "
+      "several TESTs a folder of them");
   command.add_option("--max-rmse-percent", options->max_rmse_percent,
                      "limit on the noise-removed rmse [% of the mean]");
   command.add_option("--max-p95-percent", options->max_p95_percent,
@@ -232,11 +234,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command.add_option("--max-absolute", options->max_absolute, "limit on the largest |test - ref| [W m^-2 sr^-1]");
   command.add_option("--energy", options->energy, "limits LOW:HIGH on mean(test)/mean(ref)");
   command.footer(kFooter);
-  command.callback([options, &exit_code] {
-    if (!options->diff.empty() && options->tests.size() > 1)
-      throw Error(ExitCode::usage, "--diff writes one map: give one TEST with it");
-    exit_code = compare(*options);
-  });
+  command.callback([options, &exit_code] { exit_code = compare(*options); });
 }
 
 }  // namespace volgi::app

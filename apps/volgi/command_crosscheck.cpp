@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
 #include "core/gl/context.h"
@@ -75,7 +76,7 @@ void add_crosscheck_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CrosscheckCommand>();
   CLI::App* command = app.add_subcommand(
       "crosscheck", "compare the volume on the GPU with its CPU twin, stage by stage; 1 when they differ");
-  command->add_option("SCENE", options->scene_path, "glTF file, .glb or .gltf")->required();
+  command->add_option("SCENE", options->scene_path, scene_help)->required();
   options->volume.add_to(*command);
   command->add_option("--passes", options->passes, "passes over the volume after which to compare")
       ->check(CLI::Range(1, 10000))

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -145,7 +146,7 @@ int ExportCommand::run() const {
 void add_export_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportCommand>();
   CLI::App* command = app.add_subcommand("export", "write the voxels and the radiance of a scene's volume as OpenVDB");
-  command->add_option("SCENE", options->scene_path, "glTF 2.0 scene (.gltf or .glb)")->required()->type_name("FILE");
+  command->add_option("SCENE", options->scene_path, scene_help)->required()->type_name("FILE");
   command->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb")->required()->type_name("FILE");
   options->volume.add_to(*command);
   command
@@ -156,7 +157,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("--backend", options->backend, "where the volume is computed: the CPU")
       ->check(CLI::IsMember({"auto", "cpu"}))
       ->capture_default_str();
-  command->add_option("--time", options->time_s, "time of the file's animations [s]")
+  command->add_option("--time", options->time_s, "time of the scene's animations [s]")
       ->check([](const std::string& text) {
         double time = 0.0;
         const bool finite = CLI::detail::lexical_cast(text, time) && std::isfinite(time);

@@ -7,12 +7,15 @@
 #include "apps/volgi/commands.h"
 #include "apps/volgi/frame_options.h"
 #include "apps/volgi/frame_stats.h"
+#include "apps/volgi/frame_times.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/image.h"
 #include "core/log.h"
+#include "core/progress.h"
+#include "core/scene_source.h"
 #include "core/virtual_light_list.h"
 #include "screen/image_from_texture.h"
 
@@ -30,10 +33,20 @@ struct RenderCommand {
   bool half = false;
   bool quiet = false;
   int frames = 1;
+  std::string animate;  // T0:T1:FPS; empty: one picture
   std::optional<int> device;
 
   int run() const;
-  void write_picture(const Image& picture) const;
+
+ private:
+  std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
+  void check_outputs() const;
+  void render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const;
+  void render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving, const FrameTimes& times,
+                        const WorldBox& box, gl::PassTimer& timer) const;
+  void write_picture(const screen::Frame& picture, const std::filesystem::path& path) const;
+  nlohmann::json numbers(const screen::Frame& picture, const Scene& loaded, const gl::Context& context,
+                         gl::PassTimer& timer, int times) const;
 };
 
 void warn_of_bad_pixels(const Image& picture) {
@@ -51,42 +64,38 @@ void make_folder(const std::filesystem::path& folder) {
   if (error) throw Error(ExitCode::cannot_write, folder.string() + ": cannot make this folder: " + error.message());
 }
 
-void RenderCommand::write_picture(const Image& picture) const {
-  if (out.extension() == ".exr") {
-    write_exr(out, picture, half);
-  } else {
-    write_png(out, picture, exposure_ev);
-  }
+/// Around everything at all times.
+WorldBox box_of(const SceneSource& source, const FrameTimes& times) {
+  WorldBox box;
+  for (int k = 0; k < (source.animated() ? times.count : 1); ++k) box.add(source.bounds(times.at(k)));
+  return box;
 }
 
-int RenderCommand::run() const {
-  set_quiet(quiet);
-  frame.volume.limit_threads();
-  glm::ivec2 size = scene.size();
-  screen::FrameOptions options = frame.frame_options(size);
+/// Finds out now what would fail after minutes of work.
+void RenderCommand::check_outputs() const {
   if (out.extension() != ".exr" && out.extension() != ".png") {
     throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .exr or .png");
   }
-  check_writable(out);
+  check_writable(animate.empty() ? out : frame_path(out, 0));
   if (!stats.empty()) check_writable(stats);
-  const std::filesystem::path lights_file = dump / "virtual_lights.json";
-  if (!dump.empty()) {
-    make_folder(dump);
-    check_writable(lights_file);
-  }
-  Scene loaded = load_scene(scene.scene_path, scene.time_s);
-  Camera camera = scene.camera(loaded);
-  gl::Context context(device);
-  if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
+  if (dump.empty()) return;
+  make_folder(dump);
+  check_writable(lights_file());
+}
 
-  if (!quiet && options.gi == screen::GiMode::volume && loaded.triangle_count() > 0) {
-    const bool on_gpu = screen::runs_on_gpu(options.backend);
-    fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
-               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);
+void RenderCommand::write_picture(const screen::Frame& picture, const std::filesystem::path& path) const {
+  const Image image = screen::image_from_texture(picture.radiance());
+  warn_of_bad_pixels(image);
+  if (out.extension() == ".exr") {
+    write_exr(path, image, half);
+  } else {
+    write_png(path, image, exposure_ev);
   }
-  screen::Frame picture(loaded, options);
-  const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
-  gl::PassTimer timer(context.software(), timed);
+}
+
+/// The same picture, as often as asked for, for its times.
+void RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const {
+  const Camera camera = scene.camera(loaded);
   // Two warm-up frames where times of several are wanted; one frame is shown with what it took from cold.
   const int warm_up = frames > 1 ? 2 : 0;
   for (int f = 0; f < warm_up + frames; ++f) {
@@ -95,20 +104,75 @@ int RenderCommand::run() const {
     picture.render(camera, timer);
     timer.end_frame();
   }
-  Image image = screen::image_from_texture(picture.radiance());
-  warn_of_bad_pixels(image);
-  write_picture(image);
-  auto numbers = frame_stats(loaded.name, frame.gi, size, context, timer, frames, picture.report());
+  write_picture(picture, out);
+}
+
+/// Each picture is written, whole, before the next one begins.
+void RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
+                                     const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const {
+  Progress progress("render", std::uint64_t(times.count));
+  for (int k = 0; k < times.count; ++k) {
+    timer.begin_frame();
+    {
+      const auto scope = timer.scope("core/move_scene");
+      source.move(moving, times.at(k), box);
+    }
+    picture.follow_scene(timer);
+    picture.render(scene.camera(moving), timer);
+    timer.end_frame();
+    write_picture(picture, frame_path(out, k));
+    progress.advance();
+  }
+}
+
+nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const Scene& loaded, const gl::Context& context,
+                                      gl::PassTimer& timer, int times) const {
+  auto numbers = frame_stats(loaded.name, frame.gi, scene.size(), context, timer, times, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},
                            {"vpls", frame.vpls},
                            {"set", frame.parameters}};
-  if (!stats.empty()) {
-    write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << numbers.dump(1) << '\n'; });
+  if (!animate.empty()) numbers["parameters"]["animate"] = animate;
+  return numbers;
+}
+
+int RenderCommand::run() const {
+  set_quiet(quiet);
+  frame.volume.limit_threads();
+  const screen::FrameOptions options = frame.frame_options(scene.size());
+  const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
+  check_outputs();
+  const SceneSource source(scene.scene_path);
+  const WorldBox box = box_of(source, times);
+  Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
+  scene.camera(loaded);  // says so now if there is none
+  const gl::Context context(device);
+  if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
+  if (!quiet && options.gi == screen::GiMode::volume && loaded.triangle_count() > 0) {
+    const bool on_gpu = screen::runs_on_gpu(options.backend);
+    fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
+               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);
   }
-  if (!dump.empty()) write_virtual_lights(lights_file, picture.virtual_lights());
-  if (!quiet) fmt::print("{}wrote {}\n", pass_table(numbers), out.string());
+  screen::Frame picture(loaded, options);
+  const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
+  gl::PassTimer timer(context.software(), timed);
+  if (animate.empty()) {
+    render_still(picture, loaded, timer);
+  } else {
+    render_animation(picture, source, loaded, times, box, timer);
+  }
+  const auto figures = numbers(picture, loaded, context, timer, animate.empty() ? frames : times.count);
+  if (!stats.empty()) {
+    write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
+  }
+  if (!dump.empty()) write_virtual_lights(lights_file(), picture.virtual_lights());
+  if (!quiet) {
+    const int last = times.count - 1;
+    fmt::print("{}wrote {}\n", pass_table(figures),
+               animate.empty() ? out.string()
+                               : fmt::format("{} ... {}", frame_path(out, 0).string(), frame_path(out, last).string()));
+  }
   return int(ExitCode::done);
 }
 
@@ -116,19 +180,25 @@ int RenderCommand::run() const {
 
 void add_render_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<RenderCommand>();
-  CLI::App* command =
-      app.add_subcommand("render", "render a glTF scene to an EXR (linear) or PNG (tone mapped) picture");
+  CLI::App* command = app.add_subcommand("render", "render a scene to EXR (linear) or PNG (tone mapped) pictures");
   options->scene.add_to(*command);
   command->add_option("-o,--output", options->out, "picture to write, .exr or .png")->capture_default_str();
   options->frame.add_to(*command);
   command->add_option("--exposure", options->exposure_ev, "PNG only: stops (powers of two) before the tone map")
       ->capture_default_str();
   command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
+  CLI::Option* animate =
+      command
+          ->add_option("--animate", options->animate,
+                       "a picture for each frame from T0 to T1 [s], OUT.0000.png and so on; where -o has %04d, there")
+          ->type_name("T0:T1:FPS")
+          ->excludes(command->get_option("--time"));
   command
       ->add_option("--frames", options->frames,
                    "render the same picture this often (after two warm-up frames) for times")
       ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(animate);
   command->add_option("--device", options->device,
                       "number of the EGL device (the first hardware device, else software)");
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
@@ -136,7 +206,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
                       "folder for what the last frame was lit by: virtual_lights.json, for reference --vpls");
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->footer(
-      "Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512");
+      "Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512\n"
+      "         volgi render builtin:metaballs -o out/balls.png --gi hybrid --animate 0:8:25");
   command->callback([options, &exit_code] { exit_code = options->run(); });
 }
 

@@ -41,6 +41,10 @@ constexpr Parameter<Options> kParameters[] = {
      "own "
      "samples (16)",
      1, 32, [](Options& o, double v) { o.choose_one_of = int(v); }},
+    {"vpl.near",
+     "val, hybrid: so many areas of a virtual light around it are lit by its 16 parts instead; 0: by the light alone "
+     "(4)",
+     0, 1000, [](Options& o, double v) { o.near_zone = float(v); }},
     {"negative.count", "negative: number of negative lights (256)", 1, NEGATIVE_LIGHTS_MOST,
      [](Options& o, double v) { o.negative_lights.count = int(v); }},
     {"negative.method",
@@ -58,10 +62,12 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.gather.distance = float(v); }},
     {"val.shadow", "val, hybrid: 0 convolution soft shadow maps, 1 percentage-closer, 2 one comparison (2)", 0, 2,
      [](Options& o, double v) { o.area_light_shadow = screen::AreaLightShadow::Method(int(v)); }},
-    {"val.map", "val, hybrid: texels on a side of an area light's map (256)", 16, 4096,
+    {"val.map", "val, hybrid: texels on a side of an area light's map (128)", 16, 4096,
      [](Options& o, double v) { o.area_light_map = int(v); }},
-    {"val.interleave", "val, hybrid: pixels of blocks of n x n share the lights: 1, 2, 4 or 8 (8)", 1, 8,
+    {"val.interleave", "val, hybrid: pixels of blocks of n x n share the lights: 1, 2, 4 or 8 (4)", 1, 8,
      [](Options& o, double v) { o.area_light_gather.interleave = int(v); }},
+    {"val.exact", "val, hybrid: as many pixels as so many rows hold get every light, the worst ones (10)", 0, 65536,
+     [](Options& o, double v) { o.area_light_gather.exact_rows = float(v); }},
     {"gaitatzes.half_albedo", "gaitatzes2010: 1 takes 0.5 for every albedo after the first bounce (0)", 0, 1,
      [](Options& o, double v) { o.volume.scheme.constant_albedo = v != 0.0; }},
 };

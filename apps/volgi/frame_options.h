@@ -16,7 +16,7 @@ struct FrameCommandOptions {
   std::string backend = "auto";
   VolumeCommandOptions volume;
   int vpls = 1024;
-  int vals = 30;
+  int vals = 64;
   std::optional<int> vpls_per_light;
   std::vector<std::string> parameters;  // NAME=VALUE
 

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
 #ifdef VOLGI_HAS_GL
   app::add_crosscheck_command(app, exit_code);
   app::add_bench_command(app, exit_code);
+  app::add_report_command(app, exit_code);
 #endif
   try {
     app.parse(argc, argv);

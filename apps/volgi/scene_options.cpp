@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "apps/volgi/parse_number.h"
 #include "core/error.h"
 #include "core/log.h"
 
@@ -13,16 +13,6 @@ namespace volgi::app {
 namespace {
 
 constexpr int largest_edge = 16384;
-
-/// The whole text as a finite number.
-template <typename Number>
-std::optional<Number> parse_number(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (!std::isfinite(double(number))) return std::nullopt;
-  return number;
-}
 
 std::vector<double> parse_point(const std::string& option, std::string_view text) {
   std::vector<double> point;
@@ -55,8 +45,10 @@ void SceneOptions::add_to(CLI::App& command) {
             name, [name, &out](const std::string& text) { out = parse_point(name, text); }, help)
         ->type_name("X,Y,Z");
   };
-  command.add_option("SCENE", scene_path, "glTF 2.0 scene (.gltf or .glb)")->required()->type_name("FILE");
-  command.add_option("--time", time_s, "Time of the file's animations [s]")->check(check_finite)->capture_default_str();
+  command.add_option("SCENE", scene_path, scene_help)->required()->type_name("FILE");
+  command.add_option("--time", time_s, "Time of the scene's animations [s]")
+      ->check(check_finite)
+      ->capture_default_str();
   CLI::Option* camera =
       command.add_option("--camera", camera_index, "Camera of the file, counted from 0")->check(CLI::NonNegativeNumber);
   CLI::Option* from = point("--eye", eye, "Camera position in the file's frame [m]");

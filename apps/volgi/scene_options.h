@@ -11,6 +11,9 @@
 
 namespace volgi::app {
 
+/// Help on SCENE (core/scene_source.h).
+inline constexpr const char* scene_help = "glTF 2.0 scene (.gltf or .glb), or builtin:metaballs";
+
 /// What every command that looks at a scene takes: SCENE, --time, --camera N | --eye, --target, --yfov, --size WxH.
 struct SceneOptions {
   std::filesystem::path scene_path;

@@ -113,7 +113,25 @@ size_t texture_bytes(const Texture& t, bool mipmapped) {
 
 }  // namespace
 
-SceneBuffers::SceneBuffers(const Scene& scene) : materials_(scene.materials), triangles_(scene.triangle_count()) {
+SceneBuffers::SceneBuffers(const Scene& scene) : materials_(scene.materials) {
+  set_geometry(scene);
+  const auto add_texture = [&](const TextureUse& use, bool srgb) {
+    if (use.texture < 0 || texture_of_.contains({use.texture, srgb})) return;
+    const volgi::Texture& texture = scene.textures[size_t(use.texture)];
+    texture_of_[{use.texture, srgb}] = textures_.size();
+    textures_.push_back(upload_texture(scene.images[size_t(texture.image)], texture.sampler, srgb));
+    texture_bytes_ += texture_bytes(textures_.back(), texture.sampler.mipmap);
+  };
+  for (const Material& m : materials_) {
+    add_texture(m.base_color, true);
+    add_texture(m.metallic, false);
+    add_texture(m.emissive, true);
+  }
+}
+
+void SceneBuffers::set_geometry(const Scene& scene) {
+  triangles_ = scene.triangle_count();
+  ranges_.clear();
   std::vector<const Mesh*> meshes;
   for (const Mesh& mesh : scene.meshes) {
     if (!mesh.triangles.empty()) meshes.push_back(&mesh);
@@ -128,21 +146,18 @@ SceneBuffers::SceneBuffers(const Scene& scene) : materials_(scene.materials), tr
     if (ranges_.empty() || ranges_.back().material != mesh->material) ranges_.push_back({mesh->material, first, 0});
     ranges_.back().count += GLsizei(vertices.size()) - first;
   }
-  vertices_ = Buffer(vertices);
-  vertex_array_ = make_vertex_array(vertices_.id());
-
-  const auto add_texture = [&](const TextureUse& use, bool srgb) {
-    if (use.texture < 0 || texture_of_.contains({use.texture, srgb})) return;
-    const volgi::Texture& texture = scene.textures[size_t(use.texture)];
-    texture_of_[{use.texture, srgb}] = textures_.size();
-    textures_.push_back(upload_texture(scene.images[size_t(texture.image)], texture.sampler, srgb));
-    texture_bytes_ += texture_bytes(textures_.back(), texture.sampler.mipmap);
-  };
-  for (const Material& m : materials_) {
-    add_texture(m.base_color, true);
-    add_texture(m.metallic, false);
-    add_texture(m.emissive, true);
+  const size_t bytes = vertices.size() * sizeof(Vertex);
+  if (vertices_.id() != 0 && bytes <= vertices_.bytes()) {
+    vertices_.upload(vertices.data(), bytes);
+    return;
   }
+  if (vertices_.id() == 0) {
+    vertices_ = Buffer(vertices);
+  } else {
+    vertices_ = Buffer(bytes + bytes / 5);
+    vertices_.upload(vertices.data(), bytes);
+  }
+  vertex_array_ = make_vertex_array(vertices_.id());
 }
 
 void SceneBuffers::bind_use(const Program& program, GLuint unit, const TextureUse& use, bool srgb,

@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) writeonly buffer Lights { VirtualLight chosen_lights[]; };
+layout(std430, binding = 4) writeonly buffer Ranges { vec2 ranges[]; };
 uniform int first;
 uniform int count;
 
@@ -17,6 +18,14 @@ int candidate_at(float sum) {
   return low;
 }
 
+// Where a sum is reached: candidates and parts of one, from 0 to their number.
+float place_of(float sum) {
+  int candidate = candidate_at(sum);
+  float before = summed_probability(candidate - 1);
+  float own = summed_probability(candidate) - before;
+  return float(candidate) + (own > 0.0 ? clamp((sum - before) / own, 0.0, 1.0) : 0.5);
+}
+
 void main() {
   int k = int(gl_GlobalInvocationID.x);
   if (k >= count) return;
@@ -28,4 +37,6 @@ void main() {
   l.flux *= share;
   l.area_m2 *= share;
   chosen_lights[first + k] = l;
+  ranges[first + k] = vec2(k == 0 ? 0.0 : place_of(float(k) / float(count)),
+                           k == count - 1 ? float(candidate_count) : place_of(float(k + 1) / float(count)));
 }

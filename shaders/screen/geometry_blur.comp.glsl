@@ -1,47 +1,102 @@
 #version 450 core
-// Mean over a window as wide as a block of interleaved pixels, along one axis, of pixels on the same surface: Dong et
-// al. 2009, section 6; Laine et al. 2007. The window's ends count half, so that every place in the block counts once.
-// The second axis ends in radiance.
+// Joins the subsets of lights that pixels of an interleaved block have gathered, along one axis. Dong et al. 2009,
+// section 6, and Laine et al. 2007 take the mean over a window; we interpolate each subset, between the two pixels on
+// either side that have it (a tent two blocks wide), which keeps what is linear. Pixels of other surfaces do not count;
+// a subset with one pixel left is taken from there, and the mean goes over the subsets that are found. The second axis
+// ends in radiance.
+// Fourth channel and `doubt`: variance of the mean [luminance squared], judged by what varies. See below.
+#include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D position_map;
 layout(binding = 1) uniform sampler2D normal_map;
 layout(binding = 2) uniform sampler2D albedo_map;
-layout(binding = 3) uniform sampler2D irradiance;
+layout(binding = 3) uniform sampler2D irradiance;  // fourth channel: the variance; read along the second axis only
 layout(binding = 0, rgba32f) uniform writeonly image2D blurred;
+layout(binding = 1, r32f) uniform image2D doubt;  // radiance
 uniform int interleave;
 uniform ivec2 axis;
 uniform float most_distance_m;
 uniform float least_cosine;
 uniform float off_plane;
 uniform int ends;
+uniform int adds;  // to the doubt of another picture
+
+const float PI = 3.14159265358979;
+
+struct Surface {
+  vec3 position, normal;
+};
+
+// 1 where the pixel shows the same surface, 0 elsewhere.
+float alike(Surface here, ivec2 at, ivec2 size) {
+  ivec2 inside = clamp(at, ivec2(0), size - 1);
+  vec4 there = texelFetch(position_map, inside, 0);
+  vec3 way = there.xyz - here.position;
+  float squared = dot(way, way);
+  float height = dot(way, here.normal);
+  float cosine = dot(octahedral_decode(texelFetch(normal_map, inside, 0).xy), here.normal);
+  bool like = inside == at && there.w != 0.0 && squared <= most_distance_m * most_distance_m &&
+              height * height <= off_plane * off_plane * squared && cosine >= least_cosine;
+  return like ? 1.0 : 0.0;
+}
+
+// A subset varies between its two pixels, linearly at best. Where one is missing, or both, it is unknown by as much as
+// those that are there vary, and as subsets differ from each other.
+vec4 joined(ivec2 pixel, Surface here, ivec2 size) {
+  float n = float(interleave);
+  vec4 own = texelFetch(irradiance, pixel, 0);
+  float bright = luminance(own.rgb);
+  vec4 sum = own;                  // of the subsets, and of their variance along the other axis
+  float square_sum = bright * bright;
+  float found = 1.0, pairs = 0.0;  // subsets with a pixel, with two
+  float variance = 0.0, differences = 0.0, way = 0.0;
+  for (int i = 1; i < interleave; ++i) {
+    ivec2 above = pixel + i * axis, below = pixel + (i - interleave) * axis;
+    float w_above = alike(here, above, size) * (n - float(i)), w_below = alike(here, below, size) * float(i);
+    float w = w_above + w_below;
+    if (w == 0.0) continue;
+    w_above /= w;
+    w_below /= w;
+    vec4 a = texelFetch(irradiance, clamp(above, ivec2(0), size - 1), 0);
+    vec4 b = texelFetch(irradiance, clamp(below, ivec2(0), size - 1), 0);
+    vec4 mean = w_above * a + w_below * b;
+    float l = luminance(mean.rgb);
+    float difference = luminance(a.rgb) - luminance(b.rgb);
+    bool both = w_above > 0.0 && w_below > 0.0;
+    sum += mean;
+    square_sum += l * l;
+    found += 1.0;
+    pairs += both ? 1.0 : 0.0;
+    differences += both ? difference * difference : 0.0;
+    variance += w_above * w_below * difference * difference;
+    float steps = w_above > 0.0 ? float(i) : n - float(i);
+    way += both ? 0.0 : steps * steps / (n * n);
+  }
+  vec3 mean = sum.rgb / found;
+  float spread = max(square_sum / found - luminance(mean) * luminance(mean), 0.0);
+  float unknown = way * ((pairs > 0.0 ? differences / pairs : spread) + spread);
+  variance = (variance + unknown) / (found * found) + spread * (n - found) / (n * found);
+  return vec4(mean, variance + (ends != 0 ? sum.w / found : 0.0));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = textureSize(position_map, 0);
   if (any(greaterThanEqual(pixel, size))) return;
   vec4 position = texelFetch(position_map, pixel, 0);
-  if (position.w == 0.0) {
-    imageStore(blurred, pixel, vec4(0.0));
-    return;
+  vec4 mean = vec4(0.0);
+  float error = 0.0;
+  if (position.w != 0.0) {
+    mean = joined(pixel, Surface(position.xyz, octahedral_decode(texelFetch(normal_map, pixel, 0).xy)), size);
+    if (ends != 0) {
+      vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / PI;
+      mean.rgb *= reflectance;
+      error = sqrt(mean.w) * luminance(reflectance);
+      mean.w = 1.0;
+    }
   }
-  vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).xy);
-  vec4 sum = vec4(0.0);
-  for (int i = -interleave / 2; i <= interleave / 2; ++i) {
-    ivec2 at = pixel + i * axis;
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) continue;
-    vec4 there = texelFetch(position_map, at, 0);
-    vec3 way = there.xyz - position.xyz;
-    float squared = dot(way, way);
-    float height = dot(way, normal);
-    if (there.w == 0.0 || squared > most_distance_m * most_distance_m ||
-        height * height > off_plane * off_plane * squared) continue;
-    if (dot(octahedral_decode(texelFetch(normal_map, at, 0).xy), normal) < least_cosine) continue;
-    float weight = abs(i) * 2 == interleave ? 0.5 : 1.0;
-    sum += weight * vec4(texelFetch(irradiance, at, 0).rgb, 1.0);
-  }
-  vec3 mean = sum.rgb / sum.w;
-  if (ends != 0) mean *= texelFetch(albedo_map, pixel, 0).rgb / 3.14159265358979;
-  imageStore(blurred, pixel, vec4(mean, 1.0));
+  imageStore(blurred, pixel, mean);
+  if (ends != 0) imageStore(doubt, pixel, vec4(error + (adds != 0 ? imageLoad(doubt, pixel).r : 0.0)));
 }

@@ -3,7 +3,7 @@
 #include "shared/reflective_shadow_map.glsl"
 #include "shared/virtual_light.shared.h"
 
-layout(std430, binding = 0) writeonly buffer Lights { VirtualLight virtual_lights[]; };
+layout(std430, binding = 0) buffer Lights { VirtualLight virtual_lights[]; };
 layout(std430, binding = 3) readonly buffer Samples { vec4 samples[]; };
 uniform int light;
 uniform int count;         // virtual lights of this light

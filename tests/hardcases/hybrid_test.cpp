@@ -95,6 +95,22 @@ TEST_F(Hybrid, AreaLightsAgainstOneBounce) {
   EXPECT_NEAR(occluder.ratio, 1.0, 0.05);
 }
 
+// The row of the interleaved gather: 3 % of what every light at every pixel gives.
+TEST_F(Hybrid, InterleavedIsEveryLightAtEveryPixel) {
+  if (tested_backend() == screen::Backend::cpu) return;  // no volume in it: the same passes
+  for (const std::string name : {"cornell", "room", "thin_wall", "occluder"}) {
+    screen::FrameOptions o = options(screen::GiMode::val);
+    const Image interleaved = picture(name.c_str(), o);
+    o.area_light_gather.interleave = 1;
+    const ReferenceFile shown =
+        read_reference(kData / "references" / (name + ".exr"), PathTracerOptions::Light::indirect);
+    const Metrics m =
+        measure(picture(name.c_str(), o), interleaved, nullptr, region_mask(Region::noedge, shown.layers.value()));
+    EXPECT_LT(m.relative.value().rmse_pct, 3.0) << name;
+    EXPECT_NEAR(m.relative.value().ratio, 1.0, 0.003) << name;
+  }
+}
+
 TEST_F(Hybrid, ThinWallDarkRoomStaysDark) {
   const Image image = picture("thin_wall", options(screen::GiMode::hybrid, screen::LightPart::full));
   const ReferenceFile reference = read_reference(kData / "references/thin_wall.exr", PathTracerOptions::Light::full);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include "core/surface.h"
 #include "core/visibility/embree_scene.h"
 #include "reference/picture_files.h"
+#include "reference/progressive_path_tracer.h"
 #include "reference/sampler.h"
 #include "scenes.h"
 
@@ -236,6 +238,59 @@ TEST(PathTracer, EmptySceneIsBlack) {
   Scene scene;
   add_material(scene, glm::vec3(1.0f));
   for (const glm::vec3& c : path_trace(scene, kInside, small(2)).color.pixels) EXPECT_EQ(c, glm::vec3(0.0f));
+}
+
+double rms_difference(const Image& a, const Image& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    const glm::dvec3 d = glm::dvec3(a.pixels[i]) - glm::dvec3(b.pixels[i]);
+    sum += glm::dot(d, d);
+  }
+  return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+// With BLEND, and without, where paths start at a vertex that is kept.
+std::array<Scene, 2> with_and_without_veil() {
+  std::array<Scene, 2> scenes{lit_box(), lit_box()};
+  scenes[1].meshes.pop_back();
+  return scenes;
+}
+
+TEST(ProgressivePathTracer, BytesDependNeitherOnStepsNorOnThreads) {
+  for (const Scene& scene : with_and_without_veil()) {
+    PathTracerOptions options = small(0);
+    options.threads = 1;
+    ProgressivePathTracer at_once(scene, kInside, options);
+    at_once.trace(8);
+    options.threads = 2;
+    ProgressivePathTracer in_steps(scene, kInside, options);
+    EXPECT_EQ(in_steps.image().pixels[0], glm::vec3(0.0f));
+    for (const int samples : {1, 1, 6}) in_steps.trace(samples);
+    EXPECT_EQ(in_steps.samples_per_pixel(), 8);
+    const Image a = at_once.image(), b = in_steps.image();
+    EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)), 0);
+  }
+}
+
+// Its error falls with the samples, and is not above that of path_trace(), whose two halves are stratified apart.
+TEST(ProgressivePathTracer, ApproachesThePictureOfPathTrace) {
+  PathTracerOptions options = small(128);
+  for (const Scene& scene : with_and_without_veil()) {
+    options.light = options.light == PathTracerOptions::Light::indirect ? PathTracerOptions::Light::full
+                                                                        : PathTracerOptions::Light::indirect;
+    options.seed = 99;
+    options.samples_per_pixel = 128;
+    const Image truth = path_trace(scene, kInside, options).color;
+    options.seed = 1;
+    ProgressivePathTracer tracer(scene, kInside, options);
+    tracer.trace(1);
+    const double after_one = rms_difference(tracer.image(), truth);
+    tracer.trace(7);
+    const double after_all = rms_difference(tracer.image(), truth);
+    EXPECT_LT(after_all, 0.6 * after_one);
+    options.samples_per_pixel = 8;
+    EXPECT_LT(after_all, 1.1 * rms_difference(path_trace(scene, kInside, options).color, truth));
+  }
 }
 
 TEST(EmbreeScene, BlindRaysStepOffTheirSurface) {

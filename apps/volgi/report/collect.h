@@ -1,0 +1,33 @@
+#pragma once
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/volgi/report/measure.h"
+#include "apps/volgi/report/points_file.h"
+#include "apps/volgi/report/report_scene.h"
+#include "apps/volgi/report/sweep.h"
+
+namespace volgi::app {
+
+/// Measures every setting of the sweep on every scene and light, with a progress bar; points that `file` has are not
+/// measured again. Writes the pictures of points and references below context.folder.
+/// @return the points, by scene, setting and light as the sweep lists them.
+/// @throws Error(usage) for a setting that cannot be; Error as reference_of and PointsFile::append do.
+std::vector<nlohmann::ordered_json> collect_points(std::vector<ReportScene>& scenes, const Sweep& sweep,
+                                                   const MeasureContext& context, PointsFile& file);
+
+/// What measuring finished points again gave.
+struct Repeated {
+  int points = 0;
+  int in_spread = 0;                   // whose median lies between the least and the greatest time stated
+  std::vector<double> times_as_long;   // median over the median stated, of each
+  std::vector<std::string> different;  // whose figures are not the same to the last digit, and how
+};
+
+/// Measures `count` of the sweep's points again, evenly spaced, without storing them.
+Repeated repeat_points(std::vector<ReportScene>& scenes, const Sweep& sweep, const MeasureContext& context,
+                       const PointsFile& file, int count);
+
+}  // namespace volgi::app

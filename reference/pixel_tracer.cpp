@@ -1,0 +1,45 @@
+#include "reference/pixel_tracer.h"
+
+namespace volgi {
+
+using AskedLight = PathTracerOptions::Light;
+
+glm::dvec3 asked_for(const LightSum& sum, AskedLight light) {
+  if (light == AskedLight::direct) return sum.direct;
+  return light == AskedLight::indirect ? sum.indirect : sum.direct + sum.indirect;
+}
+
+PixelTracer::PixelTracer(const Scene& scene, const Camera& camera, const PathTracerOptions& options)
+    : camera_(camera),
+      options_(options),
+      integrator_(scene),
+      max_bounces_(options.light == AskedLight::direct ? 0 : options.max_bounces.value_or(PathIntegrator::unlimited)),
+      starts_at_centre_(options.filter == PathTracerOptions::Filter::point && !integrator_.has_blending()) {}
+
+bool PixelTracer::centre(glm::ivec2 pixel, CameraRay& ray, PathVertex& vertex) const {
+  ray = camera_ray(camera_, glm::vec2(pixel) + 0.5f, options_.size);
+  return integrator_.first_vertex(ray, hash(options_.seed, 0x5eedu), vertex);
+}
+
+void PixelTracer::add_samples(glm::ivec2 pixel, const PathVertex* known, std::uint32_t point_set, int first, int count,
+                              LightSum& sum) const {
+  const std::uint32_t index = static_cast<std::uint32_t>(pixel.y) * static_cast<std::uint32_t>(options_.size.x) +
+                              static_cast<std::uint32_t>(pixel.x);
+  const std::uint32_t seed = hash(hash(options_.seed, index), point_set);
+  for (int i = first; i < first + count; ++i)
+    add_sample(glm::vec2(pixel), known, {seed, static_cast<std::uint32_t>(i)}, sum);
+}
+
+void PixelTracer::add_sample(glm::vec2 corner, const PathVertex* known, PathSampler sampler, LightSum& sum) const {
+  PathVertex vertex;
+  if (known == nullptr) {
+    const bool box = options_.filter == PathTracerOptions::Filter::box;
+    const glm::vec2 position = corner + (box ? sampler.next2() : glm::vec2(0.5f));
+    if (!integrator_.first_vertex(camera_ray(camera_, position, options_.size), sampler.next_seed(), vertex)) return;
+  }
+  const PathRadiance radiance = integrator_.trace(known != nullptr ? *known : vertex, sampler, max_bounces_);
+  sum.direct += glm::dvec3(radiance.direct);
+  sum.indirect += glm::dvec3(radiance.indirect);
+}
+
+}  // namespace volgi

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# volgi render --animate and scenes called builtin:NAME: a frame is the picture of its time, byte for byte; what fails
+# says so in one line and leaves the frames before it whole.
+#   animation.sh VOLGI SOURCE_FOLDER
+set -u
+volgi=$1
+scene=$2/data/cornell.glb
+logs=$(mktemp -d)
+work=$(mktemp -d)
+trap 'rm -rf "$logs" "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  failures=$((failures + 1))
+  printf '%s\n' "$*"
+}
+
+must() {
+  "$@" > "$logs/out" 2> "$logs/err" || fail "failed: $*: $(< "$logs/err")"
+  [[ ! -s $logs/err ]] || fail "wrote to stderr: $*: $(< "$logs/err")"
+}
+
+# refuse CODE CULPRIT ARGUMENT...
+refuse() {
+  local code=$1 culprit=$2 before status
+  shift 2
+  before=$(find . | sort)
+  timeout 60 "$volgi" "$@" > "$logs/out" 2> "$logs/err"
+  status=$?
+  ((status == code)) || fail "volgi $*: exit code $status, expected $code"
+  (($(wc -l < "$logs/err") == 1)) && grep -qF -- "$culprit" "$logs/err" ||
+    fail "volgi $*: not one line that names '$culprit': $(< "$logs/err")"
+  [[ $before == "$(find . | sort)" ]] || fail "volgi $*: left files behind"
+}
+
+"$volgi" render "$scene" -o probe.exr --size 8x8 --gi none --quiet 2> "$logs/err"
+case $? in
+  0) rm probe.exr ;;
+  4) echo "no OpenGL: $(< "$logs/err")" && exit 77 ;;
+  *) fail "cannot render: $(< "$logs/err")" ;;
+esac
+
+small=(--size 24x24 --grid 8 --vpls 32 --vals 4 --set shadow.spot=64 --set val.map=32)
+for backend in gpu cpu; do
+  for gi in volume hybrid; do
+    options=(builtin:metaballs "${small[@]}" --gi $gi --backend $backend)
+    must "$volgi" render "${options[@]}" -o out.exr --animate 1:2:2 --stats stats.json
+    times=(1 1.5 2)
+    for k in 0 1 2; do
+      must "$volgi" render "${options[@]}" -o alone.exr --time "${times[k]}" --quiet
+      cmp alone.exr "out.000$k.exr" || fail "--gi $gi --backend $backend: frame $k is not the picture of its time"
+    done
+    for pass in core/move_scene screen/follow_scene '"frames": 3' '"animate": "1:2:2"'; do
+      grep -qF -- "$pass" stats.json || fail "no $pass in --stats"
+    done
+    [[ $(echo out.*) == "out.0000.exr out.0001.exr out.0002.exr" ]] || fail "frames: $(echo out.*)"
+    rm -- *.exr
+  done
+done
+must "$volgi" render "$scene" "${small[@]}" --gi none --quiet -o 'still_%02d.png' --animate 0:0.1:10
+cmp still_00.png still_01.png || fail "a scene without animation moved"
+rm still_*.png
+
+# The third frame's name is taken by a folder.
+mkdir -p taken.0002.png/inside
+"$volgi" render builtin:metaballs "${small[@]}" --gi none -o taken.png --animate 0:1:4 --quiet 2> "$logs/err"
+(($? == 6)) || fail "a frame that cannot be written: exit code is not 6"
+[[ $(echo taken.*.png) == "taken.0000.png taken.0001.png taken.0002.png" ]] || fail "frames: $(echo ./*)"
+must "$volgi" render builtin:metaballs "${small[@]}" --gi none -o alone.png --time 0.25 --quiet
+cmp alone.png taken.0001.png || fail "the frame before one that failed is not whole"
+rm -r taken.* alone.png
+
+for text in 1 0:1 0:1:0 0:1:-2 1:0:25 0:1:many nan:1:25 0:1e9:25 0:1:25:1; do
+  refuse 2 "--animate '$text'" render builtin:metaballs -o out.png --animate "$text"
+done
+refuse 2 --animate render builtin:metaballs -o out.png --animate 0:1:2 --frames 2
+refuse 2 --animate render builtin:metaballs -o out.png --animate 0:1:2 --time 1
+refuse 6 none/ render builtin:metaballs -o none/out.png --animate 0:1:2
+for command in render reference export; do
+  out=out.exr
+  [[ $command == export ]] && out=out.vdb
+  refuse 2 builtin:metaballs "$command" builtin:teapot -o "$out"
+done
+refuse 2 builtin:metaballs crosscheck builtin:teapot
+
+# Other commands take built-in scenes as well.
+must "$volgi" reference builtin:metaballs -o reference.exr --size 16x16 --spp 2 --time 1.5 --quiet
+must "$volgi" export builtin:metaballs -o balls.vdb --grid 8 --time 1.5 --quiet
+must "$volgi" crosscheck builtin:metaballs --grid 8
+
+((failures == 0)) || printf '%d failures\n' "$failures"
+exit $((failures > 0))
