@@ -48,6 +48,10 @@ screen::FrameOptions frame_options(const AreaLightShadowName& shadow, int size) 
   o.gi = screen::GiMode::val;
   o.size = glm::ivec2(size);
   o.area_light_shadow = screen::AreaLightShadow::Method(shadow.number);
+  // The paper's own, not our defaults.
+  o.area_lights.count = 30;
+  o.area_light_map = 256;
+  o.area_light_gather.interleave = 8;
   return o;
 }
 

@@ -39,6 +39,7 @@ screen::FrameOptions frame_options(int lights, int area_lights, const AreaLightS
   o.size = glm::ivec2(size);
   o.virtual_lights.count = lights;
   o.area_lights.count = area_lights;
+  o.area_light_map = 256;  // the paper's
   o.area_light_shadow = screen::AreaLightShadow::Method(shadow.number);
   o.area_light_gather.interleave = 1;
   o.near_zone = 0.0f;  // parts of lights are not in the list that exact visibility is asked for

@@ -127,7 +127,7 @@ void RenderCommand::render_animation(screen::Frame& picture, const SceneSource& 
 
 nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const Scene& loaded, const gl::Context& context,
                                       gl::PassTimer& timer, int times) const {
-  auto numbers = frame_stats(loaded.name, frame.gi, scene.size(), context, timer, times, picture.report());
+  auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, times, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},
@@ -149,7 +149,8 @@ int RenderCommand::run() const {
   scene.camera(loaded);  // says so now if there is none
   const gl::Context context(device);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
-  if (!quiet && options.gi == screen::GiMode::volume && loaded.triangle_count() > 0) {
+  if (!quiet && (options.gi == screen::GiMode::volume || options.gi == screen::GiMode::hybrid) &&
+      loaded.triangle_count() > 0) {
     const bool on_gpu = screen::runs_on_gpu(options.backend);
     fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
                double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);

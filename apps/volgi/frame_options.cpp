@@ -84,9 +84,8 @@ screen::GiMode gi_mode(const std::string& name) {
 }  // namespace
 
 void FrameCommandOptions::add_to(CLI::App& command) {
-  command.add_option("--gi", gi, "technique; lpv is volume --scheme lpv2009")
-      ->check(CLI::IsMember({"none", "lpv", "volume", "vpl", "negative", "val", "hybrid"}))
-      ->capture_default_str();
+  command.add_option("--gi", gi, "technique; lpv is volume --scheme lpv2009 (hybrid; with the papers' schemes volume)")
+      ->check(CLI::IsMember({"none", "lpv", "volume", "vpl", "negative", "val", "hybrid"}));
   command.add_option("--light", light, "light shown; direct: straight from any emitter, indirect: after a reflection")
       ->check(CLI::IsMember({"full", "direct", "indirect"}))
       ->capture_default_str();
@@ -107,9 +106,14 @@ void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--set", parameters, parameter_help(std::span<const Parameter<Options>>(kParameters)));
 }
 
+std::string FrameCommandOptions::technique() const {
+  if (!gi.empty()) return gi;
+  return carries_sides(volume.volume_options().scheme.scheme) ? "hybrid" : "volume";
+}
+
 screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
   Options o;
-  o.gi = gi_mode(gi);
+  o.gi = gi_mode(technique());
   o.light = light == "full"     ? screen::LightPart::full
             : light == "direct" ? screen::LightPart::direct
                                 : screen::LightPart::indirect;

@@ -11,7 +11,7 @@ namespace volgi::app {
 /// What `render` says about the technique: --gi, --light, --backend, --vpls, --vpls-per-light, --set
 /// and what VolumeCommandOptions takes.
 struct FrameCommandOptions {
-  std::string gi = "volume";
+  std::string gi;  // empty: hybrid, or volume with a scheme that only the volume can take
   std::string light = "full";
   std::string backend = "auto";
   VolumeCommandOptions volume;
@@ -23,6 +23,8 @@ struct FrameCommandOptions {
   void add_to(CLI::App& command);
   /// @throws Error(usage) for a technique, scheme or parameter that does not exist, naming those that do.
   screen::FrameOptions frame_options(glm::ivec2 size) const;
+  /// The technique's name, the default one's too.
+  std::string technique() const;
 };
 
 }  // namespace volgi::app

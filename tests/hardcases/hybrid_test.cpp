@@ -45,16 +45,30 @@ bool same_bytes(const Image& a, const Image& b) {
          std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
 }
 
-// Limits of the issue: 8 and 15 %, energy within 5 %. The GPU's own is 8 % low in room, whose sides it lights by 30
-// area lights; the CPU's twin casts rays.
-TEST_F(Hybrid, CornellAndRoomAgainstPathTracing) {
+// Measured: 5.2, 7.5, 7.4 and 1.8 % by the CPU's volume, 5.6, 6.6, 8.1 by the GPU's.
+TEST_F(Hybrid, AgainstPathTracing) {
+  for (const auto& [name, limit_pct] :
+       {std::pair("cornell", 6.5), {"room", 9.0}, {"thin_wall", 9.0}, {"occluder", 3.0}}) {
+    const auto relative =
+        error(picture(name, options(screen::GiMode::hybrid)), std::string("references/") + name + ".exr");
+    EXPECT_LT(relative.rmse_pct_denoised.value(), limit_pct) << name;
+    EXPECT_NEAR(relative.ratio, 1.0, 0.05) << name;
+  }
+}
+
+// A court that the sun lights needs more than the defaults, which leave 34 %: cells that its columns do not fill, and
+// lights and shadows that reach to the well in its middle. The GPU's own sides see lights through area lights' maps: 21
+// % and 7 % too dark.
+TEST_F(Hybrid, AtriumAgainstPathTracing) {
   const bool on_cpu = tested_backend() == screen::Backend::cpu;
-  const auto cornell = error(picture("cornell", options(screen::GiMode::hybrid)), "references/cornell.exr");
-  EXPECT_LT(cornell.rmse_pct_denoised.value(), 8.0);
-  EXPECT_NEAR(cornell.ratio, 1.0, 0.05);
-  const auto room = error(picture("room", options(screen::GiMode::hybrid)), "references/room.exr");
-  EXPECT_LT(room.rmse_pct_denoised.value(), 15.0);
-  EXPECT_NEAR(room.ratio, 1.0, on_cpu ? 0.05 : 0.1);
+  screen::FrameOptions o = options(screen::GiMode::hybrid);
+  o.volume.grid_cells = 64;
+  o.area_lights.count = 128;
+  o.near_zone = 16.0f;
+  const Scene scene = load_scene(fs::path(VOLGI_BINARY_DIR) / "data/atrium.glb");
+  const auto atrium = error(render(context(), scene, scene.cameras.at(0), o).image, "references/atrium.exr");
+  EXPECT_LT(atrium.rmse_pct_denoised.value(), on_cpu ? 20.0 : 23.0);
+  EXPECT_NEAR(atrium.ratio, 1.0, on_cpu ? 0.05 : 0.08);
 }
 
 TEST_F(Hybrid, EmissionArrivesByVirtualLightsAndIsReflectedByTheVolume) {

@@ -63,7 +63,7 @@ class InterleavedGather : public GlTest {
                look_at_camera({0.3f, 3.2f, 2.6f}, {0.0f, 0.2f, 0.0f}, 0.9f, scene.bounds_min, scene.bounds_max), size),
           buffers(scene),
           list(list_of(reflected, emitted)),
-          area_lights({}),
+          area_lights({.count = 30}),  // more of them have planes that some of their lights shine behind
           maps(64, area_lights.count()),
           shadow(screen::AreaLightShadow::make(screen::AreaLightShadow::Method::single, 64, area_lights.count())) {
       area_lights.run(list.buffer, list.count(), seen.diagonal_m, seen.timer);
