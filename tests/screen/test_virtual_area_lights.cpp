@@ -115,6 +115,20 @@ void expect_sums(const VirtualAreaLight& val, const Clusters& c, const std::vect
   EXPECT_NEAR(val.size_m, std::sqrt(val.area_m2), 1e-6f);
 }
 
+/// That it lies where one of its lights does, and none is nearer to the mean.
+void expect_nearest_light(const VirtualAreaLight& val, const Clusters& c, const std::vector<VirtualLight>& lights,
+                          glm::dvec3 mean) {
+  double least = 1e30;
+  bool is_one = false;
+  for (int j = val.first_light; j < val.first_light + val.light_count; ++j) {
+    const glm::vec3 position = lights[c.order[size_t(j)]].position;
+    least = std::min(least, glm::distance(glm::dvec3(position), mean));
+    is_one = is_one || position == val.position;
+  }
+  EXPECT_TRUE(is_one);
+  EXPECT_NEAR(glm::distance(glm::dvec3(val.position), mean), least, 1e-5);
+}
+
 TEST_F(VirtualAreaLights, AreThoseOfAPlainKMeans) {
   struct Case {
     int lights, clusters;
@@ -129,13 +143,11 @@ TEST_F(VirtualAreaLights, AreThoseOfAPlainKMeans) {
     EXPECT_EQ(c.cluster_of, plain.cluster_of());
     EXPECT_EQ(c.iterations, plain.iterations());
     expect_lists(c, lights);
-    int at_mean = 0;
     for (size_t k = 0; k < c.area_lights.size(); ++k) {
       if (c.area_lights[k].light_count == 0) continue;
       expect_sums(c.area_lights[k], c, lights);
-      at_mean += glm::distance(glm::dvec3(c.area_lights[k].position), plain.means()[k]) < 1e-5;
+      expect_nearest_light(c.area_lights[k], c, lights, plain.means()[k]);
     }
-    EXPECT_GT(at_mean, of.without_flux > 0.2 ? 0.7 * c.alive : 0.9 * c.alive);
   }
 }
 
@@ -323,10 +335,10 @@ TEST_F(VirtualAreaLights, FloatAndLiveAsTheLightTurns) {
       drift.add(c.area_lights, lights);
     }
     EXPECT_GE(least_alive, 27);
-    // Measured: 1.8 and 1.6; with the window 3.1 and 1.9. Seeds from light k L / M of the L with flux would make that
-    // ten times and more than twice as much.
-    EXPECT_LT(drift.ratio(), window ? 3.7 : 2.1);
-    EXPECT_LT(drift.ratio_to_nearest(), window ? 2.3 : 2.0);
+    // Measured: 2.2 and 2.0; with the window 3.5 and 2.2: area lights step from light to light. Seeds from light k L /
+    // M of the L with flux would make that ten times and more than twice as much.
+    EXPECT_LT(drift.ratio(), window ? 3.7 : 2.5);
+    EXPECT_LT(drift.ratio_to_nearest(), window ? 2.3 : 2.2);
     RecordProperty("least_alive", least_alive);
     RecordProperty("ratio", std::to_string(drift.ratio()));
   }
