@@ -102,7 +102,8 @@ Repeated repeat_points(std::vector<ReportScene>& scenes, const Sweep& sweep, con
     const Json& spread = before.at("frame_ms");
     ++out.points;
     out.times_as_long.push_back(median_ms / spread["median"].get<double>());
-    out.in_spread += median_ms >= spread["min"].get<double>() && median_ms <= spread["max"].get<double>();
+    out.in_spread += median_ms * kSpreadOfRuns >= spread["min"].get<double>() &&
+                     median_ms <= spread["max"].get<double>() * kSpreadOfRuns;
     for (const char* figures : {"metrics", "one_bounce_metrics"}) {
       const Json was = before.value(figures, Json()), is = again.value(figures, Json());
       if (was != is)

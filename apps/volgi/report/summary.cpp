@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "apps/volgi/report/collect.h"
 #include "apps/volgi/report/html.h"
 #include "apps/volgi/report/papers.h"
 #include "apps/volgi/report/plot_svg.h"
@@ -109,11 +110,13 @@ void write_summary(const Report& report, const fs::path& folder, const fs::path&
   std::string text = fmt::format(
       "# Speed against error\n\nMade by `{}`. Device: {}; machine: {}; program: {}; measured until {}. {} points of "
       "{}×{} "
-      "pixels, times are medians of {} frames after warm-up. Error: RMSE in percent of the reference's mean, its noise "
+      "pixels, times are medians of {} frames after warm-up, from – to their range; another run's median may lie "
+      "{:.0f} % "
+      "outside it. Error: RMSE in percent of the reference's mean, its noise "
       "removed, region noedge. Ratios within a table may be carried to another machine, times may not.\n\n",
       report.command, fmt::join(report.all("device"), "; "), fmt::join(report.all("machine"), "; "),
       fmt::join(report.all("program"), "; "), report.last_date(), report.points.size(), p["size"][0].get<int>(),
-      p["size"][1].get<int>(), p["frames"].get<int>());
+      p["size"][1].get<int>(), p["frames"].get<int>(), 100.0 * (kSpreadOfRuns - 1.0));
   for (const Verdict& v : report.verdicts) {
     if (v.light == "indirect") text += scene_text(v, folder, files, files.filename().string());
   }
