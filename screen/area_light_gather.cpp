@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kLightBytes = sizeof(shared::VirtualLight);
 constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_A_BLOCK * kLightBytes;
 constexpr int kAlign = 16;           // lights: 768 bytes, a multiple of every offset alignment that GL allows
-constexpr size_t kDoubtBins = 2048;  // doubt_bins.glsl
+constexpr size_t kDoubtBins = 2048;  // exact_pixels.glsl
 constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
@@ -58,9 +58,9 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
   gather_listed_ = gl::Program::compute("screen/area_light_gather.comp.glsl", {shadow.define(), "LISTED"});
   blur_ = gl::Program::compute("screen/geometry_blur.comp.glsl");
-  count_ = gl::Program::compute("screen/doubt_count.comp.glsl");
-  threshold_ = gl::Program::compute("screen/doubt_threshold.comp.glsl");
-  list_program_ = gl::Program::compute("screen/doubt_list.comp.glsl");
+  count_ = gl::Program::compute("screen/exact_pixels_count.comp.glsl");
+  threshold_ = gl::Program::compute("screen/exact_pixels_threshold.comp.glsl");
+  list_program_ = gl::Program::compute("screen/exact_pixels_list.comp.glsl");
 }
 
 void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,

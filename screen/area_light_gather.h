@@ -26,12 +26,11 @@ struct AreaLightGatherOptions {
 
 /// Passes "screen/arrange_lights", "screen/area_light_gather", "screen/geometry_blur" and "screen/exact_pixels": the
 /// light of all virtual lights on every pixel, each seen as far as its area light is (Dong et al. 2009, §4 and §6:
-/// interleaved sampling after Segovia et al. 2006, a blur that does not cross edges of geometry). We depart
-///  - in the subsets: neighbours in the order of clusters, so that a pixel looks at few shadows, and subsets that
-///  follow
-///    on one another lie far apart in the block;
-///  - in the blur: it interpolates every subset between the nearest pixels that have it, instead of a mean;
-///  - and the pixels in most doubt, by what the blur has seen vary, are gathered again with every light.
+/// interleaved sampling after Segovia et al. 2006, a blur that does not cross edges of geometry). We depart:
+/// in the subsets: neighbours in the order of clusters, so that a pixel looks at few shadows, and subsets that follow
+/// on one another lie far apart in the block; in the blur: it interpolates every subset between the nearest pixels that
+/// have it, instead of a mean; and the pixels in most doubt, by what the blur has seen vary, are gathered again with
+/// every light.
 /// Cost a pixel: lights / n^2, and exact_rows / rows of all of them; 6 n - 3 texels of the blur.
 class AreaLightGather {
  public:
@@ -68,7 +67,7 @@ class AreaLightGather {
   gl::Texture direct_irradiance_, indirect_irradiance_, half_blurred_;
   gl::Texture doubt_;    // R32F: radiance that a pixel may err by
   gl::Buffer arranged_;  // shared::VirtualLight in the order of clusters; source is the area light
-  gl::Buffer bins_;      // uint: threshold, then pixels in each bin of doubt (doubt_bins.glsl)
+  gl::Buffer bins_;      // uint: threshold, then pixels in each bin of doubt (exact_pixels.glsl)
   gl::Buffer list_;      // pixels: coarse_pixels.glsl
   int light_count_ = 0;
   bool with_direct_ = false;

@@ -18,9 +18,9 @@ struct VirtualAreaLightOptions {
 /// Pass "screen/virtual_area_lights": k-means of all virtual lights (reflected and emitted) into area lights, restarted
 /// every frame from light k N / M, or the next that has flux and is free (Dong et al. 2009, §5 and §6). Deterministic:
 /// sums have a fixed order. Lights without flux belong to no cluster; none is left empty at the start while there are
-/// lights with flux. A cluster's position is that of its light nearest to their mean
-/// (shaders/screen/virtual_area_lights_shape.comp.glsl). Rectangles lie along the world's X
-/// as seen on their plane, within 45 degrees of X along its Y. Cost: lights times clusters, a few times over.
+/// lights with flux. A cluster's position is that of its light nearest to their mean. Rectangles lie along the world's
+/// X as seen on their plane, within 45 degrees of X along its Y (shaders/screen/virtual_area_lights_shape.comp.glsl).
+/// Cost: lights times clusters, a few times over.
 class VirtualAreaLights {
  public:
   static constexpr const char* name = "screen/virtual_area_lights";

@@ -48,7 +48,7 @@ class VirtualLightGather {
   GatherOptions options_;
   glm::ivec2 size_;
   gl::Texture direct_, indirect_, coarse_direct_, coarse_indirect_;
-  gl::Buffer list_;  // PixelListHead of shaders/screen/coarse_pixels.glsl, then pixels
+  gl::Buffer list_;  // WorkListHead of shaders/screen/work_list.glsl, then pixels
   gl::Program gather_grid_, gather_list_, discontinuity_;
 };
 

@@ -85,7 +85,8 @@ Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags) : bytes_(std::m
   const auto most = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
   if (bytes_ > most) {
     throw Error(ExitCode::over_limit, "a GPU buffer of " + std::to_string(bytes_) + " bytes exceeds this GPU's " +
-                                          std::to_string(most) + " bytes; use a smaller grid or fewer triangles");
+                                          std::to_string(most) +
+                                          " bytes; use a smaller grid or picture, or fewer lights or triangles");
   }
   GLuint id = 0;
   glCreateBuffers(1, &id);

@@ -12,7 +12,7 @@
 
 #ifdef LISTED
 layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer PixelList { PixelListHead head; uint listed[]; };
+layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #else
 layout(local_size_x = 8, local_size_y = 8) in;
 #endif

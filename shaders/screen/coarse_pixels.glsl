@@ -4,14 +4,9 @@
 
 uniform int stride;  // between coarse pixels; 1: every pixel
 
-// Beginning of a list of pixels: the arguments of an indirect dispatch of groups of 64 threads, and the length.
-struct PixelListHead {
-  uint groups_x, groups_y, groups_z;
-  uint count;
-};
+#include "screen/work_list.glsl"
 
-#define GROUPS_A_ROW 32768u  // GL promises 65535 in each direction; screen/virtual_light_gather.cpp has the same
-uint thread_index() { return (gl_WorkGroupID.y * GROUPS_A_ROW + gl_WorkGroupID.x) * 64u + gl_LocalInvocationIndex; }
+uint thread_index() { return group_index() * 64u + gl_LocalInvocationIndex; }
 
 // Coarse texels lie on every stride-th pixel, and on the last row and column, so that all pixels lie between some.
 ivec2 pixel_of_coarse(ivec2 coarse, ivec2 size) { return min(coarse * stride, size - 1); }

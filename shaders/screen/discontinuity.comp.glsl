@@ -13,7 +13,7 @@ layout(binding = 3) uniform sampler2D coarse_indirect;  // irradiance; w = 0 in 
 layout(binding = 4) uniform sampler2D coarse_direct;
 layout(binding = 0, rgba32f) uniform writeonly image2D indirect_radiance;
 layout(binding = 1, rgba32f) uniform writeonly image2D direct_radiance;
-layout(std430, binding = 0) buffer PixelList { PixelListHead head; uint listed[]; };
+layout(std430, binding = 0) buffer PixelList { WorkListHead head; uint listed[]; };
 uniform float threshold;
 uniform float contrast;
 uniform float unlike_distance_m;
@@ -46,12 +46,8 @@ Coarse coarse_at(ivec2 texel, ivec2 size) {
 }
 
 void list(ivec2 pixel) {
-  uint slot = atomicAdd(head.count, 1u);
-  uint group = slot / 64u;
-  if (slot % 64u == 0u) {
-    if (group < GROUPS_A_ROW) atomicAdd(head.groups_x, 1u);
-    else if (group % GROUPS_A_ROW == 0u) atomicAdd(head.groups_y, 1u);
-  }
+  uint slot;
+  TAKE_SLOT(head, 64u, slot)
   listed[slot] = pack_pixel(pixel);
 }
 

@@ -56,8 +56,8 @@ vec3 irradiance_of_light(Receiver at, int i) {
 }
 
 void main() {
-  uint slot = gl_WorkGroupID.y * GROUPS_A_ROW + gl_WorkGroupID.x;
-  if (slot >= tile_count) return;
+  uint slot = group_index();
+  if (slot >= head.count) return;
   int tile = int(listed_tiles[slot]);
   ivec2 pixel = ivec2(tile % tiles.x, tile / tiles.x) * NEAR_TILE + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(pixel, textureSize(position_map, 0)))) return;

@@ -37,9 +37,8 @@ bool reaches(NearLight light, Box box) {
 }
 
 void list(int tile) {
-  uint slot = atomicAdd(tile_count, 1u);
-  if (slot < GROUPS_A_ROW) atomicAdd(groups_x, 1u);
-  else if (slot % GROUPS_A_ROW == 0u) atomicAdd(groups_y, 1u);
+  uint slot;
+  TAKE_SLOT(head, 1u, slot)
   listed_tiles[slot] = uint(tile);
 }
 

@@ -21,7 +21,7 @@ uniform int negative_count;
 uniform int begins;
 uniform int ends;
 #ifdef LISTED
-layout(std430, binding = 0) readonly buffer PixelList { PixelListHead head; uint listed[]; };
+layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #endif
 
 const float PI = 3.14159265358979;

@@ -64,8 +64,12 @@ void main() {
       flux += part.flux;
       area_m2 += part.area_m2;
     }
-    pieces[first_piece + quarter] = piece(position / max(weight, 1e-30), area_m2, flux, normalize(normal + 1e-30));
+    bool dark = weight <= 0.0;  // and then anywhere
+    pieces[first_piece + quarter] = piece(dark ? all.position : position / weight, area_m2, flux,
+                                          dark ? all.normal : normalize(normal));
   }
+  // What is lower over a flat light than a thousandth of its edge sees it at a cosine under that: left out, or every
+  // pixel of the light's own plane would be looked at. Normals within 0.8 degrees count as one.
   near.rise_m = flat_light ? near.rise_m + 1e-3 * sqrt(all.area_m2) : -3.0e38;
   near_lights[first + i] = near;
 }

@@ -3,36 +3,7 @@
 # says so in one line and leaves the frames before it whole.
 #   animation.sh VOLGI SOURCE_FOLDER
 set -u
-volgi=$1
-scene=$2/data/cornell.glb
-logs=$(mktemp -d)
-work=$(mktemp -d)
-trap 'rm -rf "$logs" "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  failures=$((failures + 1))
-  printf '%s\n' "$*"
-}
-
-must() {
-  "$@" > "$logs/out" 2> "$logs/err" || fail "failed: $*: $(< "$logs/err")"
-  [[ ! -s $logs/err ]] || fail "wrote to stderr: $*: $(< "$logs/err")"
-}
-
-# refuse CODE CULPRIT ARGUMENT...
-refuse() {
-  local code=$1 culprit=$2 before status
-  shift 2
-  before=$(find . | sort)
-  timeout 60 "$volgi" "$@" > "$logs/out" 2> "$logs/err"
-  status=$?
-  ((status == code)) || fail "volgi $*: exit code $status, expected $code"
-  (($(wc -l < "$logs/err") == 1)) && grep -qF -- "$culprit" "$logs/err" ||
-    fail "volgi $*: not one line that names '$culprit': $(< "$logs/err")"
-  [[ $before == "$(find . | sort)" ]] || fail "volgi $*: left files behind"
-}
+source "$(dirname "$0")/checks.sh"
 
 "$volgi" render "$scene" -o probe.exr --size 8x8 --gi none --quiet 2> "$logs/err"
 case $? in

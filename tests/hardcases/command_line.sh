@@ -3,33 +3,8 @@
 # left behind, not even a temporary one.
 #   command_line.sh VOLGI SOURCE_FOLDER [gl]    gl: the program has the commands that need OpenGL
 set -u
-volgi=$1
-scene=$2/data/cornell.glb
 gl=${3-}
-logs=$(mktemp -d)
-work=$(mktemp -d)
-trap 'rm -rf "$logs" "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-# refuse CODE CULPRIT ARGUMENT...
-refuse() {
-  local code=$1 culprit=$2 before status lines
-  shift 2
-  before=$(find . | sort)
-  timeout 60 "$volgi" "$@" > "$logs/out" 2> "$logs/err"
-  status=$?
-  lines=$(wc -l < "$logs/err")
-  find . | sort > "$logs/files"
-  if ((status == code && lines == 1)) && grep -qF -- "$culprit" "$logs/err" && [[ $before == "$(< "$logs/files")" ]]; then
-    return
-  fi
-  failures=$((failures + 1))
-  printf 'volgi %s\n  exit code %d, expected %d; %d lines on stderr, expected one that names "%s":\n' \
-    "$*" "$status" "$code" "$lines" "$culprit"
-  sed 's/^/  | /' "$logs/err"
-  diff <(echo "$before") "$logs/files" | sed 's/^/  files: /'
-}
+source "$(dirname "$0")/checks.sh"
 
 echo 'not a scene' > text.glb
 head -c 3000 "$scene" > truncated.glb

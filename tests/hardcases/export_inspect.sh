@@ -3,24 +3,7 @@
 # pictures of them, and errors of one line with the documented exit code and nothing left behind.
 #   export_inspect.sh VOLGI SOURCE_FOLDER
 set -u
-volgi=$1
-scene=$2/data/cornell.glb
-logs=$(mktemp -d)
-work=$(mktemp -d)
-trap 'rm -rf "$logs" "$work"' EXIT
-cd "$work" || exit 1
-failures=0
-
-fail() {
-  failures=$((failures + 1))
-  printf '%s\n' "$*"
-}
-
-# must COMMAND...: succeeds without a word on stderr; its output goes to $logs/out
-must() {
-  "$@" > "$logs/out" 2> "$logs/err" || fail "failed: $*: $(< "$logs/err")"
-  [[ ! -s $logs/err ]] || fail "wrote to stderr: $*: $(< "$logs/err")"
-}
+source "$(dirname "$0")/checks.sh"
 
 # says PATTERN...: the last output has each of these
 says() {
@@ -28,21 +11,6 @@ says() {
   for pattern in "$@"; do
     grep -qE -- "$pattern" "$logs/out" || fail "no '$pattern' in: $(head -c 2000 "$logs/out")"
   done
-}
-
-# refuse CODE CULPRIT ARGUMENT...
-refuse() {
-  local code=$1 culprit=$2 before status lines
-  shift 2
-  before=$(find . | sort)
-  timeout 60 "$volgi" "$@" > "$logs/out" 2> "$logs/err"
-  status=$?
-  lines=$(wc -l < "$logs/err")
-  if ((status == code && lines == 1)) && grep -qF -- "$culprit" "$logs/err" && [[ $before == "$(find . | sort)" ]]; then
-    return
-  fi
-  fail "$(printf 'volgi %s\n  exit code %d, expected %d; stderr, expected one line that names "%s":' \
-    "$*" "$status" "$code" "$culprit")" "$(< "$logs/err")"
 }
 
 # The same bytes, whatever the threads.

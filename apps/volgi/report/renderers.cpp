@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 
+#include "apps/volgi/bench_timing.h"
 #include "apps/volgi/frame_options.h"
 #include "core/error.h"
 #include "core/gl/pass_timer.h"
@@ -15,12 +15,6 @@
 
 namespace volgi::app {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void parse(CLI::App& command, const std::vector<std::string>& options) {
   try {
@@ -73,12 +67,6 @@ PathTracerOptions tracer_options(const std::vector<std::string>& options) {
   return tracer;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 != 0 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 // The tracer's own progress bar would write over the report's.
 class Quiet {
  public:
@@ -100,12 +88,8 @@ Rendering trace_paths(const RenderTask& task) {
   std::vector<double> frames, builds;
   if (task.frames > 1) path_trace(task.scene, task.camera, tracer);  // nothing but threads and caches to warm
   for (int f = 0; f < task.frames; ++f) {
-    const auto build = Clock::now();
-    { const PathIntegrator built_alone(task.scene); }
-    builds.push_back(ms_since(build));
-    const auto start = Clock::now();
-    out.picture = path_trace(task.scene, task.camera, tracer).color;
-    frames.push_back(ms_since(start));
+    builds.push_back(time_ms([&] { const PathIntegrator built_alone(task.scene); }));
+    frames.push_back(time_ms([&] { out.picture = path_trace(task.scene, task.camera, tracer).color; }));
   }
   const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
   out.min_ms = *least;

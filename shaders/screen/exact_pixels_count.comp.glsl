@@ -1,6 +1,6 @@
 #version 450 core
 // Histogram of the doubt of pixels. Counts are integers: their sum does not depend on the order.
-#include "screen/doubt_bins.glsl"
+#include "screen/exact_pixels.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, r32f) uniform readonly image2D doubt;

@@ -1,6 +1,6 @@
 #version 450 core
 // The lowest bin such that no more than `most` pixels lie in it and above.
-#include "screen/doubt_bins.glsl"
+#include "screen/exact_pixels.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 1) buffer Bins { uint threshold; uint count[]; };
