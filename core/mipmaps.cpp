@@ -65,10 +65,12 @@ void Mipmaps::prepare(int texture, bool srgb) {
 glm::vec4 Mipmaps::sample(int texture, glm::vec2 uv, float lod, bool srgb) const {
   const Texture& t = scene_.textures[size_t(texture)];
   const Chain& levels = chains_[srgb ? 1 : 0][size_t(t.image)];
+  const glm::vec2 at = wrapped(uv, t.sampler);
   const auto level = [&](int k, bool nearest) {
     const MipLevel& l = levels[size_t(k)];
-    return filter_texels(t.sampler, {l.width, l.height}, uv, nearest,
-                         [&](int x, int y) { return l.texels[size_t(y) * size_t(l.width) + size_t(x)]; });
+    const glm::vec4* const texels = l.texels.data();
+    return filter_texels(t.sampler, {l.width, l.height}, at, nearest,
+                         [&](int x, int y) { return texels[size_t(y) * size_t(l.width) + size_t(x)]; });
   };
   if (!(lod > 0.0f)) return level(0, t.sampler.magnify_nearest);
   const bool nearest = t.sampler.minify_nearest;

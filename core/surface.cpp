@@ -68,7 +68,7 @@ glm::vec4 texture_extreme(const Scene& scene, const TextureUse& use, bool srgb, 
 glm::vec4 sample_texture(const Scene& scene, int texture, glm::vec2 uv, bool srgb) {
   const Texture& t = scene.textures[size_t(texture)];
   const TextureImage& image = scene.images[size_t(t.image)];
-  return filter_texels(t.sampler, {image.width, image.height}, uv, t.sampler.magnify_nearest,
+  return filter_texels(t.sampler, {image.width, image.height}, wrapped(uv, t.sampler), t.sampler.magnify_nearest,
                        [&](int x, int y) { return texel(image, x, y, srgb); });
 }
 

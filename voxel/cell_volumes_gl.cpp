@@ -26,7 +26,6 @@ void CellVolumesGl::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) {
     sums_[i].clear();
     sums_[i].bind_storage(i);
   }
-  sum_.set("footprint", 1.0f / 3.0f);  // cells: the piece that a fine line stands for
   gl::begin_fullscreen_pass();
   columns_.bind();
   scene.draw(sum_);

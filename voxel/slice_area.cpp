@@ -17,13 +17,6 @@ constexpr float kAreaUnit = 1048576.0f;  // of h^2; sums of integers do not depe
 constexpr int kReach = 1 + 3 + 1 + 1;
 static_assert(2 * kReach <= 2 * kLeafCells);  // two blocks apart
 
-/// Numbers of bits; baseline x86-64 has no instruction for it.
-constexpr auto kSubCount = [] {
-  std::array<std::uint8_t, 1 << kStoppedShift> count{};
-  for (size_t i = 1; i < count.size(); ++i) count[i] = std::uint8_t(count[i / 2] + i % 2);
-  return count;
-}();
-
 /// Where fine columns are, cell units: node_position(k) / SLICE_STEPS.
 inline float fine_position(int k) { return float(2 * k + 1) / float(2 * kFine); }
 
@@ -60,8 +53,8 @@ class AreaCounter {
   /// `search` is of the record's triangle.
   void add(const AreaRecord& record, const SliceTriangle& t, const SideSearch& search) {
     const int axis = t.nearest_axis;
-    const std::uint32_t subs = record.amount & ((1u << kStoppedShift) - 1);
-    const int count = kSubCount[subs];
+    const std::uint32_t subs = sub_columns(record);
+    const int count = int(sub_count(subs));
     const float stopped = float(record.amount >> kStoppedShift) / (kStoppedUnit * float(count));
     const float area = stopped / (float(kFine * kFine) * std::abs(t.normal[axis]));
     const glm::ivec3 cell = unpack_cell(record.cell);

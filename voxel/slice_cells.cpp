@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "voxel/slice_raster.h"
+#include "voxel/slice_internal.h"
 
 namespace volgi::slicing {
 
@@ -28,68 +28,79 @@ struct Leaves {
   openvdb::Vec3STree::LeafNodeType* emission = nullptr;
 };
 
+/// Adds what a triangle has in cells.
+class TriangleArea {
+ public:
+  TriangleArea(const SlicedScene& s, const SliceTriangle& t)
+      : t_(t),
+        n_(plane_normal(t)),
+        // Where alpha varies, colours count as it does.
+        material_(s, t, n_, t.nearest_axis, t.may_pass ? kLineFootprint : kFaceFootprint),
+        area_of_one_(kUnit / (kFine * kFine * std::abs(double(t.normal[t.nearest_axis])))) {}
+
+  void add(const AreaRecord& record, Cell& to) const {
+    const glm::ivec3 cell = unpack_cell(record.cell);
+    const int b = cell[shared::axis_b(t_.nearest_axis)], c = cell[shared::axis_c(t_.nearest_axis)];
+    const std::uint32_t subs = sub_columns(record);
+    if (!t_.may_pass) return add(material_.at_cell(b, c), area_of_one_ * sub_count(subs), to);
+    for (std::uint32_t rest = subs; rest != 0; rest &= rest - 1) {
+      const int sub = std::countr_zero(rest);
+      add(material_.at(kFine * b + sub % kFine, kFine * c + sub / kFine), area_of_one_, to);
+    }
+  }
+
+ private:
+  /// @param area  of the surface, whatever it stops.
+  void add(const SlicedMaterial& m, double area, Cell& to) const {
+    area *= double(m.stopped);
+    to.area += std::int64_t(area + 0.5);
+    to.albedo += glm::i64vec3(area * glm::dvec3(m.albedo) + 0.5);
+    to.normal += glm::i64vec3(glm::floor(area * glm::dvec3(t_.normal) + 0.5));
+    to.occupancy = std::max(to.occupancy, m.stopped);
+    to.emission = glm::max(to.emission, glm::pi<float>() * m.emission);
+  }
+
+  const SliceTriangle& t_;
+  const Long3 n_;
+  const TriangleMaterial material_;
+  const double area_of_one_;
+};
+
 class BlockCells {
  public:
-  BlockCells(const SlicedScene& s, std::uint32_t block, std::array<Cell, kBlockCells>& cells)
-      : s_(s), first_cell_(s.block_cell(block)), cells_(cells) {}
+  BlockCells(const SlicedScene& s, glm::ivec3 block, std::array<Cell, kBlockCells>& cells)
+      : s_(s), block_(block), cells_(cells) {}
 
-  void add(const SliceTriangle& t) {
-    if (t.normal == glm::vec3(0.0f)) return;
-    if (t.nearest_axis == 0) slice<0>(t);
-    if (t.nearest_axis == 1) slice<1>(t);
-    if (t.nearest_axis == 2) slice<2>(t);
-  }
+  /// Takes those records that are of this block's cells. @param areas  of this block, or of one that is next along an
+  /// axis: its fragments may lie half a cell below it.
+  void add(const std::vector<AreaRecord>& areas);
 
   /// Leaves of the cells with a surface; all null when there is none. The cells are empty afterwards.
   Leaves collect();
 
  private:
-  template <int axis>
-  void slice(const SliceTriangle& t);
-
   const SlicedScene& s_;
-  glm::ivec3 first_cell_;
+  glm::ivec3 block_;
   std::array<Cell, kBlockCells>& cells_;
 };
 
-template <int axis>
-void BlockCells::slice(const SliceTriangle& t) {
-  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
-  const Long3 n = plane_normal(t);
-  const glm::ivec3 last_cell = glm::min(first_cell_ + kLeafCells, s_.grid.cells) - 1;
-  // Cells next to the grid's rim take what lies up to half a cell outside.
-  const int rim = last_cell[axis] == s_.grid.cells[axis] - 1 ? 1 : 0;
-  Window window{kFine * first_cell_[b],
-                kFine * last_cell[b] + kFine - 1,
-                kFine * first_cell_[c],
-                kFine * last_cell[c] + kFine - 1,
-                first_cell_[axis] == 0 ? -1 : kFine * first_cell_[axis],
-                kFine * (last_cell[axis] + 1) + rim};
-  if (!cut(window, fine_box(t), axis)) return;
-  const double area_of_one = kUnit / (kFine * kFine * std::abs(double(t.normal[axis])));
-  const TriangleMaterial material(s_, t, n, axis, kLineFootprint);
-  const TriangleSlice<axis> triangle(t, n);
-  triangle.fragments(window, [&](int column_b, int column_c, int, std::int64_t numerator) {
-    glm::ivec3 cell;
-    cell[b] = column_b / kFine;
-    cell[c] = column_c / kFine;
-    cell[axis] = std::clamp(int(std::floor(float(triangle.depth(numerator)))), 0, s_.grid.cells[axis] - 1);
-    if (cell[axis] < first_cell_[axis] || cell[axis] > last_cell[axis]) return;
-    const SlicedMaterial m = material.at(column_b, column_c);
-    if (!(m.stopped > 0.0f)) return;
-    Cell& to = cells_[size_t(leaf_offset(cell))];
-    const double area = area_of_one * double(m.stopped);
-    to.area += std::int64_t(area + 0.5);
-    to.albedo += glm::i64vec3(area * glm::dvec3(m.albedo) + 0.5);
-    to.normal += glm::i64vec3(glm::floor(area * glm::dvec3(t.normal) + 0.5));
-    to.occupancy = std::max(to.occupancy, m.stopped);
-    to.emission = glm::max(to.emission, glm::pi<float>() * m.emission);
-  });
+void BlockCells::add(const std::vector<AreaRecord>& areas) {
+  std::uint32_t triangle = 0;
+  std::optional<TriangleArea> of_triangle;
+  for (const AreaRecord& record : areas) {
+    // What lies up to half a cell outside belongs to the grid's outermost cells.
+    const glm::ivec3 cell = glm::clamp(unpack_cell(record.cell), glm::ivec3(0), s_.grid.cells - 1);
+    if (cell >> kLeafShift != block_) continue;
+    if (!of_triangle || record.triangle != triangle) of_triangle.emplace(s_, s_.triangles[record.triangle]);
+    triangle = record.triangle;
+    of_triangle->add(record, cells_[size_t(leaf_offset(cell))]);
+  }
 }
 
 Leaves BlockCells::collect() {
   Leaves out;
-  const openvdb::Coord origin(first_cell_.x, first_cell_.y, first_cell_.z);
+  const glm::ivec3 first_cell = kLeafCells * block_;
+  const openvdb::Coord origin(first_cell.x, first_cell.y, first_cell.z);
   for (size_t i = 0; i < cells_.size(); ++i) {
     Cell& cell = cells_[i];
     if (cell.area == 0) continue;
@@ -117,14 +128,25 @@ Leaves BlockCells::collect() {
 
 }  // namespace
 
-CellVolumes make_cell_volumes(const SlicedScene& s) {
-  std::vector<Leaves> leaves(s.occupied.size());
+CellVolumes make_cell_volumes(const SlicedScene& s, const BlockTable& areas) {
+  const glm::ivec3 blocks = leaf_blocks(s.grid);
+  const size_t count = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
+  std::vector<Leaves> leaves(count);
   using Cells = std::array<Cell, kBlockCells>;
   tbb::enumerable_thread_specific<std::unique_ptr<Cells>> scratch([] { return std::make_unique<Cells>(); });
-  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
-    const std::uint32_t block = s.occupied[i];
+  tbb::parallel_for(size_t(0), count, [&](size_t i) {
+    const int row = int(i) / blocks.x;
+    const glm::ivec3 block(int(i) - row * blocks.x, row % blocks.y, row / blocks.y);
     BlockCells cells(s, block, *scratch.local());
-    for (std::uint32_t k = s.first[block]; k < s.first[block + 1]; ++k) cells.add(s.triangles[s.binned[k]]);
+    const auto areas_of = [&](glm::ivec3 at) { return areas[size_t(block_index(s.blocks, at))].get(); };
+    if (const BlockFaces* own = areas_of(block)) cells.add(own->areas);
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::ivec3 above = block;
+      if (++above[axis] >= s.blocks[axis]) continue;
+      const BlockFaces* there = areas_of(above);
+      const bool outside = kLeafCells * above[axis] >= s.grid.cells[axis];
+      if (there != nullptr && (outside || there->areas_below[size_t(axis)])) cells.add(there->areas);
+    }
     leaves[i] = cells.collect();
   });
   CellVolumes out = empty_cell_volumes(s.grid, s.scene->world_origin);

@@ -4,29 +4,16 @@
 #include <cmath>
 #include <memory>
 
-#include "voxel/slice_raster.h"
+#include "voxel/slice_area_list.h"
 
 namespace volgi::slicing {
 
 namespace {
 
-constexpr int kBlockColumns = kFine * kLeafCells;
 constexpr int kBlockCells = kLeafCells * kLeafCells * kLeafCells;
 constexpr std::uint64_t kOffCentre = std::uint64_t(1) << 63;
 constexpr std::uint64_t kNoKey = ~std::uint64_t(0);
 constexpr int kOffsetStep[3] = {kLeafCells * kLeafCells, kLeafCells, 1};  // leaf_offset
-
-/// Cell and sub-cell of the fine columns of a block.
-struct FineTable {
-  std::uint8_t cell[kBlockColumns], sub[kBlockColumns];
-  constexpr FineTable() : cell{}, sub{} {
-    for (int i = 0; i < kBlockColumns; ++i) {
-      cell[i] = std::uint8_t(i / kFine);
-      sub[i] = std::uint8_t(i % kFine);
-    }
-  }
-};
-constexpr FineTable kTable;
 
 /// Keys order the surfaces of a face: off-centre (63), depth (36 ... 62), sub-column (32 ... 35), triangle. Their depth
 /// is as coarse as the 32-bit keys of slice.frag.glsl have it, so that ties are the same.
@@ -40,23 +27,16 @@ struct MarkedFace {
 struct Scratch {
   std::array<std::array<MarkedFace, kBlockCells>, 3> faces;
   std::array<BlockMask, 3> active{};
-  // Of the triangle at hand, by cell: columns of the block fastest, from one cell below the block on.
-  std::array<std::uint32_t, (kLeafCells + 2) * kLeafCells * kLeafCells> amount{};
-  std::array<float, (kLeafCells + 2) * kLeafCells * kLeafCells> depth;
-  std::vector<std::uint16_t> amounts_touched;
+  AreaList::Scratch areas;
 };
-
-inline size_t area_entry(int cell_b, int cell_c, int layer) {
-  return size_t(cell_b) + kLeafCells * (size_t(cell_c) + kLeafCells * size_t(layer));
-}
 
 class BlockMarker {
  public:
   BlockMarker(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
-      : s_(s), first_cell_(s.block_cell(block)), scratch_(scratch) {
+      : s_(s), first_cell_(s.block_cell(block)), scratch_(scratch), areas_(first_cell_, scratch.areas) {
     const int triangle_bits = std::max(8, int(std::bit_width(s.triangles.size())));
     depth_max_ = (1u << (27 - triangle_bits)) - 1;
-    for (int axis = 0; axis < 3; ++axis) windows_[axis] = whole_window(axis);
+    for (int axis = 0; axis < 3; ++axis) windows_[axis] = block_window(s, first_cell_, axis);
   }
 
   void add(std::uint32_t index) {
@@ -90,34 +70,15 @@ class BlockMarker {
   template <int axis>
   void mark_cell(std::uint32_t index, const FlatFragments& all, int cell_b, int cell_c, std::uint32_t subs,
                  bool counts_area);
-  Window whole_window(int axis) const;
-  int layer_of(size_t at_segment, float depth, int axis) const;
   void mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub, std::uint32_t triangle) const;
-  void count_area(std::uint32_t triangle, int axis);
 
   const SlicedScene& s_;
   glm::ivec3 first_cell_;
   Scratch& scratch_;
   std::uint32_t depth_max_;
   Window windows_[3];
-  std::vector<AreaRecord> areas_;
+  AreaList areas_;
 };
-
-Window BlockMarker::whole_window(int axis) const {
-  const int b = shared::axis_b(axis), c = shared::axis_c(axis);
-  const auto last_cell = [&](int a) { return std::min(first_cell_[a] + kLeafCells, s_.grid.cells[a]) - 1; };
-  const int last_face = std::min(first_cell_[axis] + kLeafCells - 1, s_.grid.cells[axis]);
-  // Segment q of a column lies below node q - 1; face i has the segments 3i ... 3i + 2.
-  return {kFine * first_cell_[b],           kFine * last_cell(b) + kFine - 1, kFine * first_cell_[c],
-          kFine * last_cell(c) + kFine - 1, kFine * first_cell_[axis] - 1,    kFine * last_face + 1};
-}
-
-/// The cell that a fragment's depth lies in, from one below the block on. Only the segment across a cell's lower face
-/// has a bit of two: the depth is needed for it alone.
-inline int BlockMarker::layer_of(size_t at_segment, float depth, int axis) const {
-  if (kTable.sub[at_segment] == 1) return int(depth + 1.0f) - first_cell_[axis];  // floor(depth) + 1: depth >= -1/2
-  return at_segment == 0 ? 0 : kTable.cell[at_segment - 1] + 1;
-}
 
 inline void BlockMarker::mark_keys(MarkedFace& face, float depth, int i, bool centre, int sub,
                                    std::uint32_t triangle) const {
@@ -144,17 +105,17 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
   triangle.fragments(window, [&](int column_b, int column_c, int k, std::int64_t numerator) {
     const size_t at_b = size_t(column_b - fine_b), at_c = size_t(column_c - fine_c);
     const size_t at_segment = size_t(k + 1 - first_segment);
-    const int sub = kTable.sub[at_b] + kFine * kTable.sub[at_c];
+    const int sub = kFineTable.sub[at_b] + kFine * kFineTable.sub[at_c];
     const bool centre = sub == 4;
     float stopped = 1.0f;
     if constexpr (may_pass) {
       stopped = material->at(column_b, column_c).stopped;
       if (!(stopped > 0.0f)) return;
     }
-    const int cell_b = kTable.cell[at_b], cell_c = kTable.cell[at_c], local = kTable.cell[at_segment];
+    const int cell_b = kFineTable.cell[at_b], cell_c = kFineTable.cell[at_c], local = kFineTable.cell[at_segment];
     MarkedFace& face = faces[cell_b * kOffsetStep[b] + cell_c * kOffsetStep[c] + local * kOffsetStep[axis]];
     if (!may_pass || stopped >= kOpaque) {
-      face.fine_blocked |= 1u << (9 * kTable.sub[at_segment] + sub);
+      face.fine_blocked |= 1u << (9 * kFineTable.sub[at_segment] + sub);
     } else if (centre) {
       face.alpha_sum += std::max(std::uint32_t(std::lround(-std::log(1.0f - stopped) * 65536.0f)), 1u);
     }
@@ -166,51 +127,27 @@ void BlockMarker::slice(const SliceTriangle& t, std::uint32_t index, const Long3
       mark_keys(face, depth, first_cell_[axis] + local, centre, sub, index);
     }
     if (!counts_area) return;
-    if (depth == -1.0f && kTable.sub[at_segment] == 1) depth = float(triangle.depth(numerator));
-    const int layer = layer_of(at_segment, depth, axis);
-    const size_t entry = area_entry(cell_b, cell_c, layer);
-    std::uint32_t& amount = scratch_.amount[entry];
-    if (amount == 0) {
-      scratch_.amounts_touched.push_back(std::uint16_t(entry));
-      scratch_.depth[entry] = depth == -1.0f ? float(triangle.depth(numerator)) : depth;
-    }
-    amount += (std::uint32_t(std::lround(stopped * kStoppedUnit)) << kStoppedShift) + (1u << sub);
+    if (depth == -1.0f && AreaList::depth_decides(at_segment)) depth = float(triangle.depth(numerator));
+    areas_.add(cell_b, cell_c, areas_.layer(at_segment, depth, axis), sub, stopped,
+               [&] { return depth == -1.0f ? float(triangle.depth(numerator)) : depth; });
   });
-  if (counts_area) count_area(index, axis);
+  if (counts_area) areas_.end_triangle(index, axis);
 }
 
 /// The same for what lies across the axis, as most surfaces of buildings do: a cell's fragments at once.
 template <int axis>
 void BlockMarker::slice_flat(std::uint32_t index, const TriangleSlice<axis>& triangle, const Window& window,
                              bool counts_area) {
-  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
-  const int fine_b = kFine * first_cell_[b], fine_c = kFine * first_cell_[c];
   FlatFragments all{};
-  std::uint32_t columns[kBlockColumns] = {};  // by row: bits of those with fragments
-  std::uint32_t rows = 0;
-  const auto begin = [&](int k, std::int64_t numerator) {
-    const size_t at_segment = size_t(k + 1 - kFine * first_cell_[axis]);
-    all.local = kTable.cell[at_segment];
-    all.sub_segment = kTable.sub[at_segment];
-    all.depth = float(triangle.depth(numerator));
-    all.layer = layer_of(at_segment, all.depth, axis);
-  };
-  triangle.flat_rows(window, begin, [&](int first, int last, int column_c) {
-    columns[column_c - fine_c] = (2u << (last - fine_b)) - (1u << (first - fine_b));
-    rows |= 1u << (column_c - fine_c);
-  });
-  for (int cell_c = 0; rows >> (kFine * cell_c) != 0; ++cell_c) {
-    const std::uint32_t* of_cell = columns + kFine * cell_c;
-    static_assert(kFine == 3);
-    for (std::uint32_t rest = of_cell[0] | of_cell[1] | of_cell[2]; rest != 0;) {
-      const int cell_b = kTable.cell[std::countr_zero(rest)], shift = kFine * cell_b;
-      const std::uint32_t subs =
-          (of_cell[0] >> shift & 7u) | (of_cell[1] >> shift & 7u) << 3 | (of_cell[2] >> shift & 7u) << 6;
-      mark_cell<axis>(index, all, cell_b, cell_c, subs, counts_area);
-      rest &= ~(7u << shift);
-    }
-  }
-  if (counts_area) count_area(index, axis);
+  flat_cells<axis>(
+      triangle, window, first_cell_,
+      [&](size_t at_segment, float depth) {
+        all = {kFineTable.cell[at_segment], kFineTable.sub[at_segment], areas_.layer(at_segment, depth, axis), depth};
+      },
+      [&](int cell_b, int cell_c, std::uint32_t subs) {
+        mark_cell<axis>(index, all, cell_b, cell_c, subs, counts_area);
+      });
+  if (counts_area) areas_.end_triangle(index, axis);
 }
 
 template <int axis>
@@ -227,25 +164,7 @@ void BlockMarker::mark_cell(std::uint32_t index, const FlatFragments& all, int c
     if (face.low == kNoKey) scratch_.active[axis][size_t(offset >> 6)] |= std::uint64_t(1) << (offset & 63);
     mark_keys(face, all.depth, first_cell_[axis] + all.local, centre, centre ? 4 : std::countr_zero(subs), index);
   }
-  if (!counts_area) return;
-  const size_t entry = area_entry(cell_b, cell_c, all.layer);
-  scratch_.amounts_touched.push_back(std::uint16_t(entry));
-  scratch_.depth[entry] = all.depth;
-  const auto stopped = std::uint32_t(kStoppedUnit) << kStoppedShift;
-  scratch_.amount[entry] = std::uint32_t(std::popcount(subs)) * stopped + subs;
-}
-
-/// Turns what was counted of one triangle into records.
-void BlockMarker::count_area(std::uint32_t triangle, int axis) {
-  for (std::uint16_t entry : scratch_.amounts_touched) {
-    glm::ivec3 cell = first_cell_;
-    cell[shared::axis_b(axis)] += entry % kLeafCells;
-    cell[shared::axis_c(axis)] += entry / kLeafCells % kLeafCells;
-    cell[axis] += entry / (kLeafCells * kLeafCells) - 1;
-    areas_.push_back({triangle, pack_cell(cell), scratch_.amount[entry], scratch_.depth[entry]});
-    scratch_.amount[entry] = 0;
-  }
-  scratch_.amounts_touched.clear();
+  if (counts_area) areas_.add_cell(cell_b, cell_c, all.layer, subs, all.depth);
 }
 
 std::unique_ptr<BlockFaces> BlockMarker::collect() {
@@ -256,7 +175,7 @@ std::unique_ptr<BlockFaces> BlockMarker::collect() {
   if (count == 0) return nullptr;
   auto out = std::make_unique<BlockFaces>();
   out->faces.reserve(count);
-  out->areas = std::move(areas_);
+  areas_.move_to(*out);
   out->active = scratch_.active;
   scratch_.active = {};
   for (size_t axis = 0; axis < 3; ++axis) {

@@ -101,8 +101,11 @@ class TriangleMaterial {
   /// @param n  plane_normal(t); @param footprint  cells, on an edge. All must outlive this.
   TriangleMaterial(const SlicedScene& s, const SliceTriangle& t, const Long3& n, int axis, float footprint);
   SlicedMaterial at(int fine_b, int fine_c) const;
+  /// At the middle column of a cell, or where the triangle is nearest to it by its weights: one answer for a cell.
+  SlicedMaterial at_cell(int cell_b, int cell_c) const;
 
  private:
+  SlicedMaterial at(const glm::vec3& weights) const;
   glm::vec4 texel(const TextureUse& use, const glm::vec3& weights, float lod, bool srgb) const;
 
   const SlicedScene& s_;
@@ -141,6 +144,14 @@ struct AreaRecord {
 };
 constexpr int kStoppedShift = 9;
 constexpr float kStoppedUnit = 65536.0f;
+/// Numbers of sub-columns in nine bits; baseline x86-64 has no instruction for it.
+constexpr auto kSubCounts = [] {
+  std::array<std::uint8_t, 1 << kStoppedShift> count{};
+  for (size_t i = 1; i < count.size(); ++i) count[i] = std::uint8_t(count[i / 2] + i % 2);
+  return count;
+}();
+inline std::uint32_t sub_columns(const AreaRecord& r) { return r.amount & ((1u << kStoppedShift) - 1); }
+inline std::uint32_t sub_count(std::uint32_t sub_columns) { return kSubCounts[sub_columns]; }
 inline std::uint32_t pack_cell(glm::ivec3 cell) {
   return std::uint32_t(cell.x + 1) | std::uint32_t(cell.y + 1) << 10 | std::uint32_t(cell.z + 1) << 20;
 }
@@ -159,6 +170,7 @@ struct BlockFaces {
   std::vector<FaceRecord> faces;
   std::vector<float> coverage;  // by face
   std::vector<AreaRecord> areas;
+  std::array<bool, 3> areas_below{};  // by axis: some lie in the cells below the block
 
   int face(int axis, int offset) const {
     const size_t a = size_t(axis), word = size_t(offset >> 6);
@@ -183,6 +195,10 @@ VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table);
 /// Gives every side the area of the surface that it stands for.
 void count_areas(const SlicedScene& s, const BlockTable& table, VoxelGrid& voxels);
 
-CellVolumes make_cell_volumes(const SlicedScene& s);
+/// The blocks' areas alone, as mark_faces counts them.
+BlockTable list_areas(const SlicedScene& s);
+
+/// What cells hold of the surfaces in them. @param areas  mark_faces or list_areas.
+CellVolumes make_cell_volumes(const SlicedScene& s, const BlockTable& areas);
 
 }  // namespace volgi::slicing

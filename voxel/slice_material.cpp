@@ -6,15 +6,17 @@ namespace volgi::slicing {
 
 namespace {
 
-/// Barycentric weights of a fine column.
-glm::vec3 weights_at(const SliceTriangle& t, const Long3& n, int axis, int fine_b, int fine_c) {
+/// Barycentric weights of a fine column. Inlined: a vec3 that is returned goes through memory piecemeal.
+inline __attribute__((always_inline)) glm::vec3 weights_at(const SliceTriangle& t, const Long3& n, int axis, int fine_b,
+                                                           int fine_c) {
   const int b = shared::axis_b(axis), c = shared::axis_c(axis);
   const std::int64_t at_b = node_position(fine_b), at_c = node_position(fine_c);
+  const double per_area = 1.0 / double(n[size_t(axis)]);
   glm::vec3 weights;
   for (int k = 0; k < 3; ++k) {
     const glm::i64vec3 p(t.vertex[size_t(k + 1) % 3]), q(t.vertex[size_t(k + 2) % 3]);
     const std::int64_t area = (q[b] - p[b]) * (at_c - p[c]) - (q[c] - p[c]) * (at_b - p[b]);
-    weights[k] = float(double(area) / double(n[size_t(axis)]));
+    weights[k] = float(double(area) * per_area);
   }
   return weights;
 }
@@ -30,8 +32,8 @@ float level_of_detail(const Scene& scene, const Mesh& mesh, const glm::uvec3& co
   const TextureImage& image = scene.images[size_t(scene.textures[size_t(use.texture)].image)];
   const double turned = double(glm::determinant(glm::mat2(use.uv_from_texcoord)));
   const double texels = std::abs(double(u.x * v.y - u.y * v.x) * turned) * image.width * image.height;
-  return float(0.5 *
-               std::log2(std::max(texels * double(footprint * footprint) / std::max(twice_area_cells, 1e-20), 1.0)));
+  const double of_footprint = texels * double(footprint * footprint) / std::max(twice_area_cells, 1e-20);
+  return 0.5f * std::log2(float(std::clamp(of_footprint, 1.0, 1e30)));
 }
 
 /// @param base  baseColor times COLOR_0; @param metallic, emissive  of the texture or 1.
@@ -79,8 +81,16 @@ TriangleMaterial::TriangleMaterial(const SlicedScene& s, const SliceTriangle& t,
 }
 
 SlicedMaterial TriangleMaterial::at(int fine_b, int fine_c) const {
+  return constant_ != nullptr ? *constant_ : at(weights_at(t_, n_, axis_, fine_b, fine_c));
+}
+
+SlicedMaterial TriangleMaterial::at_cell(int cell_b, int cell_c) const {
   if (constant_ != nullptr) return *constant_;
-  const glm::vec3 weights = weights_at(t_, n_, axis_, fine_b, fine_c);
+  const glm::vec3 inside = glm::clamp(weights_at(t_, n_, axis_, kFine * cell_b + 1, kFine * cell_c + 1), 0.0f, 1.0f);
+  return at(inside / (inside.x + inside.y + inside.z));
+}
+
+SlicedMaterial TriangleMaterial::at(const glm::vec3& weights) const {
   const Mesh& mesh = s_.mesh(t_);
   const Material& m = s_.material(t_);
   glm::vec4 base = m.base_color_factor * texel(m.base_color, weights, base_lod_, true);

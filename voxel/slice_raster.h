@@ -2,10 +2,25 @@
 // Exact scan conversion of a triangle at the fine columns of one block.
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "voxel/slice_internal.h"
 
 namespace volgi::slicing {
+
+constexpr int kBlockColumns = kFine * kLeafCells;
+
+/// Cell and sub-cell of the fine columns of a block.
+struct FineTable {
+  std::uint8_t cell[kBlockColumns], sub[kBlockColumns];
+  constexpr FineTable() : cell{}, sub{} {
+    for (int i = 0; i < kBlockColumns; ++i) {
+      cell[i] = std::uint8_t(i / kFine);
+      sub[i] = std::uint8_t(i % kFine);
+    }
+  }
+};
+constexpr FineTable kFineTable;
 
 /// Fine columns first ... last of both axes, and the nodes k that may be a fragment's first node above the surface.
 struct Window {
@@ -13,6 +28,17 @@ struct Window {
   int first_k, last_k;
   bool holds_all_k = false;  // no fragment of the triangle is outside them
 };
+
+/// All fragments of a block's faces in the pass along `axis`.
+inline Window block_window(const SlicedScene& s, glm::ivec3 first_cell, int axis) {
+  const int b = shared::axis_b(axis), c = shared::axis_c(axis);
+  const auto last_cell = [&](int a) { return std::min(first_cell[a] + kLeafCells, s.grid.cells[a]) - 1; };
+  const int last_face = std::min(first_cell[axis] + kLeafCells - 1, s.grid.cells[axis]);
+  // Segment q of a column lies below node q - 1; face i has the segments 3i ... 3i + 2.
+  return {kFine * first_cell[b],        kFine * last_cell(b) + kFine - 1,
+          kFine * first_cell[c],        kFine * last_cell(c) + kFine - 1,
+          kFine * first_cell[axis] - 1, kFine * last_face + 1};
+}
 
 /// What of a window the triangle's bounds hold; false when that is nothing.
 inline bool cut(Window& w, const FineBox& box, int axis) {
@@ -185,5 +211,33 @@ class TriangleSlice {
   const SliceTriangle& t_;
   std::int64_t sign_, n_axis_, n_b_, n_c_, tie_;
 };
+
+/// The fragments of a flat triangle, a cell's at once. Calls begin(segment of the block, depth), then visit(cell_b,
+/// cell_c, bits of its sub-columns) for the cells of the block from `first_cell` on.
+template <int axis, class Begin, class Visit>
+void flat_cells(const TriangleSlice<axis>& triangle, const Window& window, glm::ivec3 first_cell, Begin&& begin,
+                Visit&& visit) {
+  constexpr int b = axis == 2 ? 0 : axis + 1, c = axis == 0 ? 2 : axis - 1;
+  const int fine_b = kFine * first_cell[b], fine_c = kFine * first_cell[c];
+  std::uint32_t columns[kBlockColumns] = {};  // by row: bits of those with fragments
+  std::uint32_t rows = 0;
+  const auto begin_flat = [&](int k, std::int64_t numerator) {
+    begin(size_t(k + 1 - kFine * first_cell[axis]), float(triangle.depth(numerator)));
+  };
+  triangle.flat_rows(window, begin_flat, [&](int first, int last, int column_c) {
+    columns[column_c - fine_c] = (2u << (last - fine_b)) - (1u << (first - fine_b));
+    rows |= 1u << (column_c - fine_c);
+  });
+  for (int cell_c = 0; rows >> (kFine * cell_c) != 0; ++cell_c) {
+    const std::uint32_t* of_cell = columns + kFine * cell_c;
+    static_assert(kFine == 3);
+    for (std::uint32_t rest = of_cell[0] | of_cell[1] | of_cell[2]; rest != 0;) {
+      const int cell_b = kFineTable.cell[std::countr_zero(rest)], shift = kFine * cell_b;
+      visit(cell_b, cell_c,
+            (of_cell[0] >> shift & 7u) | (of_cell[1] >> shift & 7u) << 3 | (of_cell[2] >> shift & 7u) << 6);
+      rest &= ~(7u << shift);
+    }
+  }
+}
 
 }  // namespace volgi::slicing

@@ -6,8 +6,7 @@ namespace volgi {
 
 namespace {
 
-VoxelGrid voxelize(const slicing::SlicedScene& s) {
-  slicing::BlockTable table = slicing::mark_faces(s);
+VoxelGrid make_voxels(const slicing::SlicedScene& s, slicing::BlockTable& table) {
   slicing::cover_faces(s, table);
   VoxelGrid voxels = slicing::make_sides(s, table);
   slicing::count_areas(s, table, voxels);
@@ -27,16 +26,20 @@ Mipmaps voxelization_mipmaps(const Scene& scene) {
 }
 
 VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
-  return voxelize(slicing::slice_scene(scene, grid, mipmaps));
+  const slicing::SlicedScene s = slicing::slice_scene(scene, grid, mipmaps);
+  slicing::BlockTable table = slicing::mark_faces(s);
+  return make_voxels(s, table);
 }
 
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
-  return slicing::make_cell_volumes(slicing::slice_scene(scene, grid, mipmaps));
+  const slicing::SlicedScene s = slicing::slice_scene(scene, grid, mipmaps);
+  return slicing::make_cell_volumes(s, slicing::list_areas(s));
 }
 
 Voxelized voxelize_all_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
   const slicing::SlicedScene s = slicing::slice_scene(scene, grid, mipmaps);
-  return {voxelize(s), slicing::make_cell_volumes(s)};
+  slicing::BlockTable table = slicing::mark_faces(s);
+  return {make_voxels(s, table), slicing::make_cell_volumes(s, table)};
 }
 
 VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid) {

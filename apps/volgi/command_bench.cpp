@@ -55,7 +55,9 @@ struct BenchCommand {
   void run_cochran2007(nlohmann::json& results) const;
   void run_dong2009(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
-  std::vector<std::string> scenes_or(std::vector<std::string> usual) const { return scenes.empty() ? usual : scenes; }
+  std::vector<std::string> scenes_or(const std::vector<std::string>& usual) const {
+    return scenes.empty() ? usual : scenes;
+  }
   void show(const std::string& table) const;
   Scene scene(const std::string& name) const;
   nlohmann::json bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const;
@@ -136,12 +138,10 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
 }
 
 void BenchCommand::run_voxelize(nlohmann::json& results) const {
-  nlohmann::json& r = results["voxelize"];
-  r = bench_voxelize(scene("atrium"), largest_grid, frames);
-  if (json) return;
-  fmt::print("{} ({} triangles) at {}^3: sides {:.1f} ms, cells {:.1f} ms, meshToVolume {:.1f} ms: {:.1f} times\n",
-             r["scene"].get<std::string>(), r["triangles"].get<size_t>(), largest_grid, r["sides_ms"].get<double>(),
-             r["cells_ms"].get<double>(), r["mesh_to_volume_ms"].get<double>(), r["ratio"].get<double>());
+  for (const std::string& name : scenes_or({"atrium", "atrium_detail"})) {
+    nlohmann::json& r = results["voxelize"].emplace_back(bench_voxelize(scene(name), largest_grid, frames));
+    show(voxelize_table(r));
+  }
 }
 
 void BenchCommand::run_cochran2007(nlohmann::json& results) const {

@@ -1,5 +1,5 @@
 // Material at a point of the triangle that a fragment stands for. Mipmap level: one for the whole triangle, in which a
-// square of `footprint` cells has one texel in the mean (0 magnifies), so that passes along different axes agree.
+// square of FOOTPRINT cells has one texel in the mean (0 magnifies), so that passes along different axes agree.
 flat in ivec3 v_vertex[3];  // slice_vertex
 flat in vec2 v_uv0[3];
 flat in vec2 v_uv1[3];
@@ -12,7 +12,10 @@ float triangle_lod(sampler2D image, int texcoord, mat3 transform);
 #define MATERIAL_LOD triangle_lod(image, texcoord, transform)
 #include "shared/material.glsl"
 
+#ifndef FOOTPRINT
 uniform float footprint;  // cells
+#define FOOTPRINT footprint
+#endif
 
 float triangle_lod(sampler2D image, int texcoord, mat3 transform) {
   vec2 u = texcoord == 0 ? v_uv0[1] - v_uv0[0] : v_uv1[1] - v_uv1[0];
@@ -21,7 +24,7 @@ float triangle_lod(sampler2D image, int texcoord, mat3 transform) {
   float texels = abs((u.x * v.y - u.y * v.x) * determinant(mat2(transform))) * size.x * size.y;
   vec3 a = vec3(v_vertex[1] - v_vertex[0]) / float(SLICE_STEPS);
   vec3 b = vec3(v_vertex[2] - v_vertex[0]) / float(SLICE_STEPS);
-  return 0.5 * log2(max(texels * footprint * footprint / max(length(cross(a, b)), 1e-20), 1.0));
+  return 0.5 * log2(max(texels * FOOTPRINT * FOOTPRINT / max(length(cross(a, b)), 1e-20), 1.0));
 }
 
 vec2 uv0_at(vec3 weights) { return weights.x * v_uv0[0] + weights.y * v_uv0[1] + weights.z * v_uv0[2]; }
