@@ -152,7 +152,7 @@ PulseVolume::Data::Data(const VoxelGrid& v, const CellVolumes& cells, const Sche
 
 namespace {
 
-/// Power and lit faces of a leaf that a pass has written.
+/// Power and lit rows of a leaf that a pass has written.
 void look_at(const float* lobes, LeafLight& light) {
   light = {};
   for (int band = 0; band < kLobeBands; ++band) {
@@ -161,11 +161,10 @@ void look_at(const float* lobes, LeafLight& light) {
     for (int cell = 0; cell < kLobeLeafCells; ++cell) {
       if (power[cell] <= 0.0f) continue;
       total += double(power[cell]);
-      const int c[3] = {cell >> 6, (cell >> 3) & 7, cell & 7};
-      for (unsigned axis = 0; axis < 3; ++axis) {
-        if (c[axis] == 0) light.lit_faces |= 1u << (2 * axis);
-        if (c[axis] == kLeafCells - 1) light.lit_faces |= 2u << (2 * axis);
-      }
+      const std::uint64_t row = std::uint64_t(1) << (cell >> 3);
+      light.lit_rows |= row;
+      if ((cell & 7) == 0) light.lit_low |= row;
+      if ((cell & 7) == 7) light.lit_high |= row;
     }
     light.power[band] = float(total);
   }

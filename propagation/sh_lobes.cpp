@@ -36,7 +36,8 @@ int LeafNumbers::beside(int number_of, int face) const {
 LobeVolume::LobeVolume(const LeafNumbers& numbers, int coefficients)
     : leaf_floats_(size_t(coefficients * kLobeBands * kLobeLeafCells)),
       chunk_leaves_(std::min(kChunkLeaves, size_t(numbers.count()))),
-      table_(size_t(numbers.count()), zero_leaf()) {
+      table_(size_t(numbers.count()), zero_leaf()),
+      slot_of_(size_t(numbers.count()), -1) {
   assert(coefficients <= 9);
 }
 
@@ -47,15 +48,21 @@ size_t LobeVolume::cache_bytes() {
 
 const float* LobeVolume::dark() { return zero_leaf(); }
 
-float* LobeVolume::slot(size_t index) {
-  while (chunks_.size() * chunk_leaves_ <= index) {
-    const size_t bytes = chunk_bytes();
-    void* p = std::aligned_alloc(bytes % kHugePage == 0 ? kHugePage : 4096, bytes);
-    if (p == nullptr) throw std::bad_alloc();
-    if (bytes % kHugePage == 0) madvise(p, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost without
-    chunks_.emplace_back(static_cast<float*>(p));
-  }
-  return chunks_[index / chunk_leaves_].get() + (index % chunk_leaves_) * leaf_floats_;
+/// A chunk more.
+void LobeVolume::add_slots() {
+  const size_t bytes = chunk_bytes();
+  void* p = std::aligned_alloc(bytes % kHugePage == 0 ? kHugePage : 4096, bytes);
+  if (p == nullptr) throw std::bad_alloc();
+  if (bytes % kHugePage == 0) madvise(p, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost without
+  const size_t first = chunks_.size() * chunk_leaves_;
+  chunks_.emplace_back(static_cast<float*>(p));
+  rows_written_.resize(first + chunk_leaves_);
+  for (size_t i = chunk_leaves_; i > 0; --i) free_.push_back(int(first + i - 1));  // the first comes first
+}
+
+float* LobeVolume::slot(int index) const {
+  const size_t i = size_t(index);
+  return chunks_[i / chunk_leaves_].get() + (i % chunk_leaves_) * leaf_floats_;
 }
 
 /// Whole huge pages, but for grids that do not fill one.
@@ -64,17 +71,33 @@ size_t LobeVolume::chunk_bytes() const {
   return bytes < kHugePage ? bytes : (bytes + kHugePage - 1) / kHugePage * kHugePage;
 }
 
+void LobeVolume::release(int number) {
+  free_.push_back(slot_of_[size_t(number)]);
+  slot_of_[size_t(number)] = -1;
+  table_[size_t(number)] = zero_leaf();
+}
+
 void LobeVolume::assign(std::vector<int> numbers) {
-  for (const int n : leaves_) table_[size_t(n)] = zero_leaf();
+  for (const int n : leaves_) {
+    if (!std::binary_search(numbers.begin(), numbers.end(), n)) release(n);
+  }
   leaves_ = std::move(numbers);
-  for (size_t i = 0; i < leaves_.size(); ++i) table_[size_t(leaves_[i])] = slot(i);
+  for (const int n : leaves_) {
+    int& of_leaf = slot_of_[size_t(n)];
+    if (of_leaf >= 0) continue;
+    if (free_.empty()) add_slots();
+    of_leaf = free_.back();
+    free_.pop_back();
+    rows_written_[size_t(of_leaf)] = kAllRows;
+    table_[size_t(n)] = slot(of_leaf);
+  }
 }
 
 void LobeVolume::drop(std::span<const char> dropped) {
   size_t kept = 0;
   for (size_t i = 0; i < leaves_.size(); ++i) {
     if (dropped[i] != 0) {
-      table_[size_t(leaves_[i])] = zero_leaf();
+      release(leaves_[i]);
     } else {
       leaves_[kept++] = leaves_[i];
     }
@@ -88,6 +111,9 @@ void LobeVolume::swap(LobeVolume& other) noexcept {
   chunks_.swap(other.chunks_);
   leaves_.swap(other.leaves_);
   table_.swap(other.table_);
+  slot_of_.swap(other.slot_of_);
+  free_.swap(other.free_);
+  rows_written_.swap(other.rows_written_);
 }
 
 size_t LobeVolume::bytes() const { return chunks_.size() * chunk_bytes() + table_.size() * sizeof(float*); }

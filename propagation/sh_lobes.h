@@ -43,8 +43,11 @@ class LobeVolume {
   /// The leaf of zeros.
   static const float* dark();
 
-  /// These leaves and no others, their lobes unset. @param numbers  ascending.
+  /// These leaves and no others, their lobes unset; a leaf that there was keeps its memory. @param numbers  ascending.
   void assign(std::vector<int> numbers);
+  /// Of a leaf that there is: rows (LeafLight) in which its memory may hold anything but zeros. All, unless who writes
+  /// the leaf says so.
+  std::uint64_t& rows_written(int number) { return rows_written_[size_t(slot_of_[size_t(number)])]; }
   /// Leaves dropped (as flags over leaves()) read as zeros from now on.
   void drop(std::span<const char> dropped);
   void swap(LobeVolume& other) noexcept;
@@ -55,14 +58,19 @@ class LobeVolume {
     void operator()(float* p) const { std::free(p); }
   };
   using Chunk = std::unique_ptr<float[], Free>;
-  float* slot(size_t index);
+  void add_slots();
+  float* slot(int index) const;
+  void release(int number);
   size_t chunk_bytes() const;
 
   size_t leaf_floats_;
   size_t chunk_leaves_;
-  std::vector<Chunk> chunks_;  // kept between passes, filled from the first
+  std::vector<Chunk> chunks_;  // kept between passes
   std::vector<int> leaves_;
   std::vector<float*> table_;
+  std::vector<int> slot_of_;                 // by number; -1: none
+  std::vector<int> free_;                    // slots
+  std::vector<std::uint64_t> rows_written_;  // by slot
 };
 
 }  // namespace volgi

@@ -17,6 +17,7 @@ constexpr int kWidth = VOLGI_LOBES_WIDTH;
 typedef float Row __attribute__((vector_size(4 * kWidth), may_alias));
 typedef float UnalignedRow __attribute__((vector_size(4 * kWidth), may_alias, aligned(4)));
 typedef float HalfRow __attribute__((vector_size(32), may_alias));
+typedef float UnalignedHalfRow __attribute__((vector_size(32), may_alias, aligned(4)));
 typedef std::int32_t Mask __attribute__((vector_size(4 * kWidth)));
 
 #define VOLGI_INLINE inline __attribute__((always_inline))
@@ -44,7 +45,11 @@ VOLGI_INLINE void store_leaf(float* p, Row r) {
   }
 }
 
+typedef std::int32_t HalfMask __attribute__((vector_size(32)));
 VOLGI_INLINE Row select(Mask m, Row a) { return m ? a : Row{}; }
+#if VOLGI_LOBES_WIDTH != 8
+VOLGI_INLINE HalfRow select(HalfMask m, HalfRow a) { return m ? a : HalfRow{}; }
+#endif
 VOLGI_INLINE float select(bool m, float a) { return m ? a : 0.0f; }
 
 /// Where the power through a face is zero, that is not a matter of rounding (FLUX_LEAST).
@@ -174,32 +179,55 @@ VOLGI_INLINE void rescale_row(Row* l) {
   for (int k = 0; k < Order::kCoefficients; ++k) l[k] *= factor;
 }
 
-/// What rescaling looks at on the way: power (before: that is what the rescaled lobe carries), and which faces of the
-/// leaf are lit. `at` is the offset of a vector's first cell.
+/// Bit k: component k is above zero.
+VOLGI_INLINE std::uint32_t lit_bits(Row r) {
+#if VOLGI_LOBES_WIDTH == 16
+  return _mm512_cmp_ps_mask(__m512(r), _mm512_setzero_ps(), _CMP_GT_OQ);
+#elif defined(__AVX__)
+  return std::uint32_t(_mm256_movemask_ps(_mm256_cmp_ps(__m256(r), _mm256_setzero_ps(), _CMP_GT_OQ)));
+#else
+  std::uint32_t bits = 0;
+  for (int i = 0; i < kWidth; ++i) bits |= std::uint32_t(r[i] > 0.0f) << i;
+  return bits;
+#endif
+}
+
+/// Calls f(offset of a vector's first cell) for the vectors that hold some of the rows.
+template <class F>
+VOLGI_INLINE void for_rows(std::uint64_t rows, const F& f) {
+  if (rows == kAllRows) {
+    for (int at = 0; at < kLobeLeafCells; at += kWidth) f(at);
+    return;
+  }
+  if (kWidth == 16) rows = (rows | rows >> 1) & 0x5555555555555555u;
+  for (; rows != 0; rows &= rows - 1) f(8 * __builtin_ctzll(rows));
+}
+
+/// What rescaling looks at on the way: power (before: that is what the rescaled lobe carries), and which rows are lit.
+/// `at` is the offset of a vector's first cell.
 struct Tally {
-  Row sum{}, low_x{}, high_x{}, low_y{}, high_y{};
+  Row sum{};
+  std::uint64_t lit = 0, low = 0, high = 0;
 
   VOLGI_INLINE void add(int at, Row power) {
-    const int x = at >> 6, y = (at >> 3) & 7;
     sum += power;
-    if (x == 0) low_x += power;
-    if (x == 7) high_x += power;
-    if (y == 0) low_y += power;
-    if (y + kWidth / 8 == 8) high_y += power;
+    const std::uint32_t bits = lit_bits(power);
+    add_row(at >> 3, bits & 255u);
+    if (kWidth == 16) add_row((at >> 3) + 1, bits >> 8);
   }
-  static bool any(Row r, int first, int last) {
-    bool lit = false;
-    for (int i = first; i < last; ++i) lit |= r[i] > 0.0f;
-    return lit;
+  VOLGI_INLINE void add_row(int row, std::uint32_t bits) {
+    lit |= std::uint64_t(bits != 0) << row;
+    low |= std::uint64_t(bits & 1u) << row;
+    high |= std::uint64_t(bits >> 7) << row;
   }
   void finish(int band, LeafLight& light) const {
     float along_z[8];
     for (int z = 0; z < 8; ++z) along_z[z] = sum[z] + (kWidth == 16 ? sum[z + kWidth - 8] : 0.0f);
     light.power[band] = ((along_z[0] + along_z[1]) + (along_z[2] + along_z[3])) +
                         ((along_z[4] + along_z[5]) + (along_z[6] + along_z[7]));
-    const bool lit[6] = {any(low_x, 0, kWidth),           any(high_x, 0, kWidth), any(low_y, 0, 8),
-                         any(high_y, kWidth - 8, kWidth), along_z[0] > 0.0f,      along_z[7] > 0.0f};
-    for (unsigned f = 0; f < 6; ++f) light.lit_faces |= unsigned(lit[f]) << f;
+    light.lit_rows |= lit;
+    light.lit_low |= low;
+    light.lit_high |= high;
   }
 };
 
@@ -298,44 +326,45 @@ VOLGI_INLINE void fetch_ahead(const float* cells) {
 
 template <class Order>
 void gather(const float* own, const float* const beside[6], const std::uint64_t* closed, const float* ahead,
-            float* out) {
+            std::uint64_t rows, float* out) {
   for (int band = 0; band < kLobeBands; ++band) {
     const Around around = of_band(own, beside, band);
-    for (int at = 0; at < kLobeLeafCells; at += kWidth) {
-      fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
-      Row l[Order::kCoefficients];
-      if (closed_at(closed, at) == 0) {
-        gather_row<Order>(around, at, kAllOpen, l);
-      } else {
-        gather_row<Order>(
-            around, at, [=](int face) { return open_mask(closed, at, face); }, l);
-      }
-      for (int k = 0; k < Order::kCoefficients; ++k) store(out + lobe_block(k, band) + at, l[k]);
-    }
+    for_rows(
+        rows, [&](int at) __attribute__((always_inline)) {
+          fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
+          Row l[Order::kCoefficients];
+          if (closed_at(closed, at) == 0) {
+            gather_row<Order>(around, at, kAllOpen, l);
+          } else {
+            gather_row<Order>(
+                around, at, [=](int face) { return open_mask(closed, at, face); }, l);
+          }
+          for (int k = 0; k < Order::kCoefficients; ++k) store(out + lobe_block(k, band) + at, l[k]);
+        });
   }
 }
 
 #include "propagation/sh_lobes_half_steps.inl"
 
 template <class Order, bool kStream>
-void rescale_to(const float* gathered, float* out, LeafLight& light) {
+void rescale_to(const float* gathered, std::uint64_t rows, float* out, LeafLight& light) {
   light = {};
   for (int band = 0; band < kLobeBands; ++band) {
     Tally tally;
-    for (int at = 0; at < kLobeLeafCells; at += kWidth) {
+    for_rows(rows, [&](int at) __attribute__((always_inline)) {
       Row l[Order::kCoefficients];
       for (int k = 0; k < Order::kCoefficients; ++k) l[k] = load(gathered + lobe_block(k, band) + at);
       tally.add(at, l[0]);
       rescale_row<Order>(l);
       for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
-    }
+    });
     tally.finish(band, light);
   }
 }
 
 template <class Order>
-void rescale(const float* gathered, float* out, bool stream, LeafLight& light) {
-  stream ? rescale_to<Order, true>(gathered, out, light) : rescale_to<Order, false>(gathered, out, light);
+void rescale(const float* gathered, std::uint64_t rows, float* out, bool stream, LeafLight& light) {
+  stream ? rescale_to<Order, true>(gathered, rows, out, light) : rescale_to<Order, false>(gathered, rows, out, light);
 }
 
 template <class Order>
@@ -352,33 +381,33 @@ void carried(const float* lobes, float* out) {
 }
 
 template <class Order, bool kStream>
-void gather_rescale_to(const float* own, const float* const beside[6], const float* ahead, float* out,
-                       LeafLight& light) {
+void gather_rescale_to(const float* own, const float* const beside[6], const float* ahead, std::uint64_t rows,
+                       float* out, LeafLight& light) {
   light = {};
   for (int band = 0; band < kLobeBands; ++band) {
     const Around around = of_band(own, beside, band);
     Tally tally;
-    for (int at = 0; at < kLobeLeafCells; at += kWidth) {
+    for_rows(rows, [&](int at) __attribute__((always_inline)) {
       fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
       Row l[Order::kCoefficients];
       gather_row<Order>(around, at, kAllOpen, l);
       tally.add(at, l[0]);
       rescale_row<Order>(l);
       for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
-    }
+    });
     tally.finish(band, light);
   }
 }
 
 template <class Order>
-void gather_rescale(const float* own, const float* const beside[6], const float* ahead, float* out, bool stream,
-                    LeafLight& light) {
-  stream ? gather_rescale_to<Order, true>(own, beside, ahead, out, light)
-         : gather_rescale_to<Order, false>(own, beside, ahead, out, light);
+void gather_rescale(const float* own, const float* const beside[6], const float* ahead, std::uint64_t rows, float* out,
+                    bool stream, LeafLight& light) {
+  stream ? gather_rescale_to<Order, true>(own, beside, ahead, rows, out, light)
+         : gather_rescale_to<Order, false>(own, beside, ahead, rows, out, light);
 }
 
-template <class Order>
-VOLGI_INLINE float passed_through(const float* l, int face) {
+template <class Order, class T>
+VOLGI_INLINE T passed_through(const T* l, int face) {
   switch (face) {
     case 0:
       return passed<Order, 0, -1>(l);
@@ -395,20 +424,23 @@ VOLGI_INLINE float passed_through(const float* l, int face) {
   }
 }
 
-template <class Order>
-VOLGI_INLINE void powers_of(const float* cells, int face, int count, float powers[8]) {
-  for (int z = 0; z < count; ++z) {
-    float l[Order::kCoefficients];
-    for (int k = 0; k < Order::kCoefficients; ++k) l[k] = cells[z + k * kStride];
-    powers[z] = passed_through<Order>(l, face);
-  }
+/// Of cells from `cells` on, as many as a T holds.
+template <class Order, class T>
+VOLGI_INLINE T power_of(const float* cells, int face) {
+  T l[Order::kCoefficients];
+  for (int k = 0; k < Order::kCoefficients; ++k) l[k] = *reinterpret_cast<const T*>(cells + k * kStride);
+  return passed_through<Order>(l, face);
 }
 
 template <class Order>
 void face_powers(const float* own, int face, int cell, int count, float powers[kLobeBands][8]) {
   for (int band = 0; band < kLobeBands; ++band) {
     const float* cells = own + lobe_block(0, band) + cell;
-    count == 1 ? powers_of<Order>(cells, face, 1, powers[band]) : powers_of<Order>(cells, face, 8, powers[band]);
+    if (count == 1) {
+      powers[band][0] = power_of<Order, float>(cells, face);
+    } else {
+      *reinterpret_cast<UnalignedHalfRow*>(powers[band]) = power_of<Order, HalfRow>(cells, face);
+    }
   }
 }
 

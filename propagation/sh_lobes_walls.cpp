@@ -24,7 +24,7 @@ void close_outside(LeafWalls& walls, const Grid& grid, glm::ivec3 lowest) {
 void add_sides(LeafWalls& walls, const VoxelGrid& voxels, const VoxelGrid::Leaf& leaf) {
   for (int face = 0; face < 6; ++face) {
     for (int row = 0; row < 64; ++row) {
-      SideRow sides{std::uint8_t(face), std::uint8_t(row), 0, std::uint32_t(walls.sides.size())};
+      SideRow sides{std::uint8_t(face), std::uint8_t(row), 0, false, std::uint32_t(walls.sides.size())};
       for (int z = 0; z < 8; ++z) {
         const glm::uvec2 cell = VoxelGrid::unpack(leaf.buffer().data()[8 * row + z]);
         if (!shared::has_side(cell, face)) continue;
@@ -32,6 +32,7 @@ void add_sides(LeafWalls& walls, const VoxelGrid& voxels, const VoxelGrid::Leaf&
         close(walls, 8 * row + z, face);
         sides.cells = std::uint8_t(sides.cells | (1 << z));
         const shared::Side& s = voxels.sides()[side];
+        sides.partly |= s.coverage < 1.0f;
         walls.sides.push_back(
             {side, std::min(s.coverage, 1.0f), shared::side_returned_fraction(s.albedo, s.area_m2, s.face_m2)});
       }

@@ -13,6 +13,7 @@ struct SideRow {
   std::uint8_t face;
   std::uint8_t row;
   std::uint8_t cells;   // a bit for each cell that has a side there
+  bool partly;          // some of them let light through
   std::uint32_t first;  // of LeafWalls::sides: one for each bit, in their order
 };
 

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 #include <xmmintrin.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "propagation/sh_lobes.h"
@@ -15,7 +16,7 @@ namespace volgi {
 class LobeWave {
  public:
   LobeWave(const LeafNumbers& numbers, int coefficients)
-      : numbers_(numbers), now_(numbers, coefficients), next_(numbers, coefficients) {}
+      : numbers_(numbers), now_(numbers, coefficients), next_(numbers, coefficients), lit_(size_t(numbers.count())) {}
 
   /// Starts over. @param fill  (number of leaf, its lobes unset, LeafLight&).
   template <typename Fill>
@@ -29,12 +30,20 @@ class LobeWave {
   glm::dvec3 in_flight() const { return in_flight_; }  // power per band [W], added up leaf by leaf
   /// The leaves beside one: of zeros where there are none.
   void find_beside(int number, const float* beside[6]) const;
+  /// Rows of a leaf (LeafLight) that a pass may leave light in: those with light and those beside them.
+  std::uint64_t rows_reached(int number) const;
+  /// Those with light. (All, in dense waves.)
+  std::uint64_t rows_lit(int number) const { return dense_ ? kAllRows : lit_[size_t(number)].any; }
+  /// Within step(): of leaf `number` only these rows will be written; the others become dark.
+  void write_only(int number, std::uint64_t rows);
   /// Whether what step() writes is better not kept in the cache.
   bool streams() const { return streams_; }
   /// All leaves take part, lit or not: what sparse storage is measured against.
   void set_dense(bool dense) { dense_ = dense; }
   bool dense() const { return dense_; }
-  size_t bytes() const { return now_.bytes() + next_.bytes() + light_.capacity() * sizeof(LeafLight); }
+  size_t bytes() const {
+    return now_.bytes() + next_.bytes() + light_.capacity() * sizeof(LeafLight) + lit_.size() * sizeof(LitRows);
+  }
 
  private:
   template <typename F>
@@ -44,7 +53,12 @@ class LobeWave {
 
   LeafNumbers numbers_;
   LobeVolume now_, next_;
+  struct LitRows {
+    std::uint64_t any = 0, low = 0, high = 0;  // LeafLight
+  };
+
   std::vector<LeafLight> light_;  // of now_.leaves()
+  std::vector<LitRows> lit_;      // by number of leaf, of now_
   glm::dvec3 in_flight_{0.0};
   bool dense_ = false;
   bool streams_ = false;
@@ -75,6 +89,8 @@ void LobeWave::for_leaves(size_t count, const F& f) {
 template <typename Fill>
 void LobeWave::start(std::vector<int> leaves, const Fill& fill) {
   now_.assign(std::move(leaves));
+  for (const int n : now_.leaves()) now_.rows_written(n) = kAllRows;
+  std::fill(lit_.begin(), lit_.end(), LitRows{});
   light_.resize(now_.leaves().size());
   for_leaves(light_.size(), [&](size_t i) { fill(now_.leaves()[i], now_.leaf(now_.leaves()[i]), light_[i]); });
   settle(now_);

@@ -94,7 +94,7 @@ void ConservativeTransport::emit_leaf(int number, std::span<const glm::vec4> sen
       kernels_.add_lobes(side_lobes_[row.face], 8 * row.row, 8, power, out);
     }
   }
-  kernels_.rescale(out, out, false, light);
+  kernels_.rescale(out, kAllRows, out, false, light);
 }
 
 void ConservativeTransport::pass(std::span<glm::vec4> received, bool reflect_hits) {
@@ -104,6 +104,8 @@ void ConservativeTransport::pass(std::span<glm::vec4> received, bool reflect_hit
 
 void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received, bool reflect_hits, float* out,
                                       LeafLight& light) {
+  const std::uint64_t rows = half_steps_ ? kAllRows : wave_.rows_reached(number);
+  wave_.write_only(number, rows);
   const float* beside[6];
   wave_.find_beside(number, beside);
   const float* own = lobes().leaf(number);
@@ -111,17 +113,17 @@ void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received,
   fetch_faces(number);
   const LeafWalls* walls = walls_[size_t(number)].get();
   if (walls == nullptr && !half_steps_) {
-    kernels_.gather_rescale(own, beside, ahead, out, wave_.streams(), light);
+    kernels_.gather_rescale(own, beside, ahead, rows, out, wave_.streams(), light);
     return;
   }
   alignas(64) float gathered[9 * kLobeBands * kLobeLeafCells];
   if (half_steps_) {
     kernels_.gather_half(own, beside, walls != nullptr ? walls->closed.data() : kAllOpen.data(), gathered);
   } else {
-    kernels_.gather(own, beside, walls->closed.data(), ahead, gathered);
+    kernels_.gather(own, beside, walls->closed.data(), ahead, rows, gathered);
   }
-  if (walls != nullptr) hit_sides(number, *walls, received, reflect_hits, gathered);
-  kernels_.rescale(gathered, out, wave_.streams(), light);
+  if (walls != nullptr) hit_sides(number, *walls, rows, received, reflect_hits, gathered);
+  kernels_.rescale(gathered, rows, out, wave_.streams(), light);
 }
 
 /// The next leaf's neighbours at +x and +y have not been read in this pass: asks for what it will want of them.
@@ -135,11 +137,13 @@ void ConservativeTransport::fetch_faces(int number) const {
   }
 }
 
-void ConservativeTransport::hit_sides(int number, const LeafWalls& walls, std::span<glm::vec4> received,
-                                      bool reflect_hits, float* out) {
+void ConservativeTransport::hit_sides(int number, const LeafWalls& walls, std::uint64_t rows,
+                                      std::span<glm::vec4> received, bool reflect_hits, float* out) {
   const float* own = lobes().leaf(number);
   const float step = half_steps_ ? 0.5f : 1.0f;
+  const std::uint64_t lit = half_steps_ ? kAllRows : wave_.rows_lit(number);
   for (const SideRow& row : walls.rows) {
+    if (((row.partly ? rows : lit) >> row.row & 1u) == 0) continue;
     const LeafWalls::SideThere* there = &walls.sides[row.first];
     const bool one = (row.cells & (row.cells - 1)) == 0;  // as where walls across z are
     const int count = one ? 1 : 8;
@@ -181,7 +185,7 @@ glm::vec3 ConservativeTransport::end_coarsely(std::span<glm::vec4> received, con
   if (!c.link) c.link = std::make_unique<CoarseLink>(voxels_, c.voxels, coefficients(order_));
   t.wave_.start(c.link->reached(lobes()), [&](int number, float* out, LeafLight& light) {
     c.link->gather(lobes(), kernels_, number, out);
-    kernels_.rescale(out, out, false, light);
+    kernels_.rescale(out, kAllRows, out, false, light);
   });
   const glm::dvec3 lost = in_flight() - t.in_flight();
   std::fill(c.received.begin(), c.received.end(), glm::vec4(0.0f));

@@ -49,7 +49,8 @@ class ConservativeTransport : public Transport {
 
   void emit_leaf(int number, std::span<const glm::vec4> sent, float* out, LeafLight& light);
   void pass_leaf(int number, std::span<glm::vec4> received, bool reflect_hits, float* out, LeafLight& light);
-  void hit_sides(int number, const LeafWalls& walls, std::span<glm::vec4> received, bool reflect_hits, float* out);
+  void hit_sides(int number, const LeafWalls& walls, std::uint64_t rows, std::span<glm::vec4> received,
+                 bool reflect_hits, float* out);
   void pass_partly(int number, const SideRow& row, int z, float share, float* out);
   void fetch_faces(int number) const;
   bool ended(const BounceRules& rules) const;

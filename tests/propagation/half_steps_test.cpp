@@ -70,7 +70,7 @@ TEST_P(HalfSteps, MoveAndSpreadAsTheFineGrid) {
       }
     }
     kernels_->gather_half(coarse.get(), kDark, open.data(), coarse_out.get());
-    kernels_->gather(fine.get(), kDark, open.data(), fine.get(), fine_out.get());
+    kernels_->gather(fine.get(), kDark, open.data(), fine.get(), kAllRows, fine_out.get());
     for (int k = 0; k < coefficients(); ++k) {
       for (int c = 3; c <= 4; ++c) {
         const auto block = size_t(lobe_block(k, 1));
@@ -93,7 +93,7 @@ TEST_P(HalfSteps, KeepPower) {
     for (int i = 0; i < kLobeBands * kLobeLeafCells; ++i) {
       raw[size_t(i)] = std::pow(std::abs(number(random)), 8.0f);  // most nearly dark
       for (int k = 1; k < coefficients(); ++k)
-        raw[size_t(lobe_block(k, 0) + i)] = 1.5f * number(random) * raw[size_t(i)];
+        raw[size_t(lobe_block(k, 0)) + size_t(i)] = 1.5f * number(random) * raw[size_t(i)];
     }
     Closed closed{};
     const auto close = [&](int cell, int face) {
@@ -110,7 +110,7 @@ TEST_P(HalfSteps, KeepPower) {
       }
     }
     LeafLight before, after;
-    kernels_->rescale(raw.get(), now.get(), false, before);
+    kernels_->rescale(raw.get(), kAllRows, now.get(), false, before);
     kernels_->gather_half(now.get(), kDark, closed.data(), next.get());
     double shown[kLobeBands] = {};
     for (int i = 0; i < kLobeLeafCells; ++i) {
@@ -122,7 +122,7 @@ TEST_P(HalfSteps, KeepPower) {
       }
     }
     for (int i = 0; i < kLobeBands * kLobeLeafCells; ++i) ASSERT_GE(next[size_t(i)], 0.0f);
-    kernels_->rescale(next.get(), raw.get(), false, after);
+    kernels_->rescale(next.get(), kAllRows, raw.get(), false, after);
     for (int band = 0; band < kLobeBands; ++band)
       EXPECT_NEAR(double(after.power[band]) + 0.5 * shown[band], double(before.power[band]),
                   1e-5 * double(before.power[band]));

@@ -141,10 +141,10 @@ TEST_P(Conservative, IsotropicLightIsAFixedPoint) {
     for (size_t i = 0; i < floats; ++i) leaf[i] = i < 3 * kLobeLeafCells ? 2.5f : 0.0f;
     const float* beside[6] = {leaf, leaf, leaf, leaf, leaf, leaf};
     LeafLight light;
-    kernels->gather_rescale(leaf, beside, leaf, out, true, light);
+    kernels->gather_rescale(leaf, beside, leaf, kAllRows, out, true, light);
     for (size_t i = 0; i < floats; ++i) ASSERT_NEAR(out[i], leaf[i], 2e-6f) << name << " " << i;
     for (const float power : light.power) EXPECT_NEAR(power, 2.5f * 512.0f, 1e-2f);
-    EXPECT_EQ(light.lit_faces, 63u);
+    EXPECT_EQ(light.lit_rows, kAllRows);
   }
 }
 
