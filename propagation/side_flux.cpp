@@ -16,9 +16,13 @@ struct Target {
 };
 
 /// The side of the 5^3 cells around a point that is nearest and faces most alike: by the cosine between the normals
-/// less the distance in cells. -1: there is none.
+/// less the distance in cells; those that face the surface's way, of cells that reach in front of it, before all others
+/// (what is smaller than a cell may have no other). -1: there is none, or the surface is the grid's rim and looks out:
+/// what a roof there reflects leaves the scene and is not for the room below.
 int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal) {
   const glm::vec3 point = shared::cell_from_world(voxels.grid(), world_position);
+  const float reach = DEPOSIT_REACH * shared::staircase_factor(normal);
+  if (!shared::cell_inside(voxels.grid(), glm::ivec3(glm::floor(point + reach * normal)))) return -1;
   const glm::ivec3 centre(glm::floor(point));
   const glm::ivec3 first = glm::max(centre - 2, 0);
   const glm::ivec3 last = glm::min(centre + 2, voxels.grid().cells - 1);
@@ -28,11 +32,13 @@ int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 n
   for (c.z = first.z; c.z <= last.z; ++c.z) {
     for (c.y = first.y; c.y <= last.y; ++c.y) {
       for (c.x = first.x; c.x <= last.x; ++c.x) {
+        const glm::vec3 to_centre = glm::vec3(c) + 0.5f - point;
+        const bool in_front = glm::dot(to_centre, normal) > -reach;
         const glm::uvec2 own = voxels.cell_sides(c);
         const int count = int(shared::count_bits(own.y & 63u));
-        const float distance = glm::distance(glm::vec3(c) + 0.5f, point);
         for (int side = int(own.x); side < int(own.x) + count; ++side) {
-          const float score = glm::dot(voxels.sides()[size_t(side)].normal, normal) - distance;
+          const float cosine = glm::dot(voxels.sides()[size_t(side)].normal, normal);
+          const float score = cosine - glm::length(to_centre) + (in_front && cosine > 0.0f ? DEPOSIT_FIRST : 0.0f);
           if (best >= 0 && score <= best_score) continue;
           best = side;
           best_score = score;

@@ -6,20 +6,26 @@ layout(std430, binding = 12) buffer FluxFixed { uint flux_fixed[]; };  // 3 per 
 layout(std430, binding = 13) buffer FluxLost { uint flux_lost[3]; };   // what found no side
 uniform float flux_unit;  // [W]; all light of one source is at most 2^30 of them
 
-// Any side of the 5^3 cells around that faces the same way at all, the nearest first by rings.
+// The side of the 5^3 cells around that is nearest and faces most alike; those that face the surface's way, of cells that
+// reach in front of it, before all others. None where the surface is the grid's rim and looks out.
 int find_any_side(vec3 point, vec3 normal) {
+  float reach = DEPOSIT_REACH * staircase_factor(normal);
+  if (!cell_inside(grid, ivec3(floor(point + reach * normal)))) return -1;
   ivec3 centre = ivec3(floor(point));
   int best = -1;
   float best_score = -1e30;
   for (int k = 0; k < 125; ++k) {
     ivec3 offset = ivec3(k % 5 - 2, (k / 5) % 5 - 2, k / 25 - 2);
     ivec3 cell = centre + offset;
+    vec3 to_centre = vec3(cell) + 0.5 - point;
     if (!cell_inside(grid, cell)) continue;
+    bool in_front = dot(to_centre, normal) > -reach;
     uvec2 own_sides = cell_sides[cell_index(grid, cell)];
     for (int face = 0; face < 6; ++face) {
       if (!has_side(own_sides, face)) continue;
       int index = int(side_index(own_sides, face));
-      float score = dot(sides[index].normal, normal) - length(vec3(cell) + 0.5 - point);
+      float cosine = dot(sides[index].normal, normal);
+      float score = cosine - length(to_centre) + (in_front && cosine > 0.0 ? DEPOSIT_FIRST : 0.0);
       if (score > best_score) {
         best_score = score;
         best = index;

@@ -36,6 +36,11 @@ SHARED_FUNCTION uint side_index(uvec2 cell_sides, int face) {
   return cell_sides.x + count_bits(cell_sides.y & ((1u << face) - 1u));
 }
 
+// Of staircase factors: as far in front of a surface, in cells, as the cell that sees it has its centre; less a little,
+// so that a wall on the grid's rim looks out of the grid and a cell behind it does not reach in front, despite rounding.
+#define DEPOSIT_REACH 0.49f
+#define DEPOSIT_FIRST 8.0f  // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
+
 SHARED_FUNCTION float staircase_factor(vec3 normal) { return abs(normal.x) + abs(normal.y) + abs(normal.z); }
 
 // A tilted surface shows the grid a staircase m of s times its area A, which also intercepts (s-1)/s of what it sends;

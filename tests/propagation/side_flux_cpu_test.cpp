@@ -55,6 +55,29 @@ TEST(SideFluxCpu, StraysAndLosses) {
   EXPECT_NEAR(sum(flux).x, 2.0, 1e-6);
 }
 
+// What the outside of the grid's rim reflects leaves the scene; half a cell further in, or where the surface looks in,
+// it does not.
+TEST(SideFluxCpu, OutsideOfTheRimIsLost) {
+  const VoxelGrid voxels = rooms_in_a_row(1, 16, glm::vec3(0.5f));  // cells of 0.125
+  for (int axis = 0; axis < 3; ++axis) {
+    for (float sign : {-1.0f, 1.0f}) {
+      glm::vec3 rim(0.1f), out(0.0f);
+      rim[axis] = sign;
+      out[axis] = sign;
+      const glm::vec3 tilted = glm::normalize(out + glm::vec3(0.2f, -0.1f, 0.15f));
+      Powers flux(voxels.side_count(), glm::vec4(0.0f));
+      glm::vec3 lost(0.0f);
+      const std::vector<FluxSample> outward = {
+          {rim, out, glm::vec3(1.0f)}, {rim - 0.05f * out, out, glm::vec3(2.0f)}, {rim, tilted, glm::vec3(4.0f)}};
+      deposit(voxels, outward, flux, lost);
+      EXPECT_EQ(lost, glm::vec3(7.0f));
+      deposit(voxels, {{{rim, -out, glm::vec3(8.0f)}, {rim - 0.1f * out, out, glm::vec3(16.0f)}}}, flux, lost);
+      EXPECT_EQ(lost, glm::vec3(7.0f));
+      EXPECT_NEAR(sum(flux).x, 24.0, 1e-5);
+    }
+  }
+}
+
 // A tilted surface has its staircase in the families as |n_x| : |n_y| : |n_z|.
 TEST(SideFluxCpu, TiltedSurfacesSplit) {
   const glm::vec3 n = glm::normalize(glm::vec3(1.0f, 2.0f, 0.0f));
