@@ -107,6 +107,12 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
 
 }  // namespace
 
+int automatic_stride(size_t sides, size_t lights) {
+  constexpr size_t kRays = size_t(1) << 19;
+  constexpr size_t kLargest = 32;
+  return int(std::clamp((sides * lights + kRays - 1) / kRays, size_t(1), kLargest));
+}
+
 std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
                                    std::span<const VirtualLight> lights, int stride) {
   assert(stride >= 1);

@@ -18,6 +18,10 @@ inline int first_light_of_side(glm::ivec3 cell, int face, int stride) {
   return int((std::uint64_t(place) * std::uint64_t(stride)) >> 32);
 }
 
+/// The stride that keeps rays within a budget: what 1024 lights in strides of 16 cost 8192 sides, as cornell has in 32
+/// cells. Few sides take more of the lights each, many sides every 32nd: neighbours even that out.
+int automatic_stride(size_t sides, size_t lights);
+
 /// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi cos_side cos_light / (pi d^2 + A) over
 /// those that a ray from the side's surface reaches. A side takes every stride-th light, `stride` times as bright. Such
 /// a light stands for stride A of surface, too, but a side cannot tell apart what is nearer together than it is large:

@@ -160,7 +160,8 @@ void VolumeCpu::first_bounce_in() {
                                    : virtual_lights_cpu(*embree_, *emitters_, count);
   const std::span<const shared::VirtualLight> all = virtual_lights_.lights;
   const auto brought_by = [&](std::span<const shared::VirtualLight> lights) {
-    return reflected_flux(voxels_, side_gather(voxels_, *embree_, lights, options_.virtual_light_stride));
+    const int stride = options_.virtual_light_stride.value_or(automatic_stride(voxels_.side_count(), all.size()));
+    return reflected_flux(voxels_, side_gather(voxels_, *embree_, lights, stride));
   };
   if (!options_.bounces || !carries_sides(options_.scheme.scheme)) {
     flux_.punctual = brought_by(all);

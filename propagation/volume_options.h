@@ -25,7 +25,7 @@ struct VolumeOptions {
   // Of first_bounce (core/visibility/virtual_lights_cpu.h, propagation/side_gather.h):
   int virtual_lights = 1024;         // at most kMostVirtualLights
   int virtual_light_candidates = 4;  // times as many to choose from; 1: as they come
-  int virtual_light_stride = 32;     // each side takes every so many of them
+  std::optional<int> virtual_light_stride;  // each side takes every so many of them; none: automatic_stride()
   static constexpr int kMostVirtualLights = 65536;
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;

@@ -39,7 +39,7 @@ struct FrameOptions {
   GatherOptions gather;
   VirtualAreaLightOptions area_lights;
   AreaLightShadow::Method area_light_shadow = AreaLightShadow::Method::single;
-  int area_light_map = 128;  // texels on each side of an area light's map
+  int area_light_map = 256;  // texels on each side of an area light's map
   AreaLightGatherOptions area_light_gather;
 };
 

@@ -62,7 +62,7 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.gather.distance = float(v); }},
     {"val.shadow", "val, hybrid: 0 convolution soft shadow maps, 1 percentage-closer, 2 one comparison (2)", 0, 2,
      [](Options& o, double v) { o.area_light_shadow = screen::AreaLightShadow::Method(int(v)); }},
-    {"val.map", "val, hybrid: texels on a side of an area light's map (128)", 16, 4096,
+    {"val.map", "val, hybrid: texels on a side of an area light's map (256)", 16, 4096,
      [](Options& o, double v) { o.area_light_map = int(v); }},
     {"val.interleave", "val, hybrid: pixels of blocks of n x n share the lights: 1, 2, 4 or 8 (4)", 1, 8,
      [](Options& o, double v) { o.area_light_gather.interleave = int(v); }},
