@@ -12,8 +12,10 @@ namespace volgi::screen {
 /// by flux alone: nothing that carries light is left out, and no light carries more than 1 / kFluxShare of an even
 /// share. Each source keeps its number of lights, chosen by systematic resampling (equal steps through the summed
 /// weights): a light chosen with probability p carries 1/p of its flux and area, and any sum over lights keeps its
-/// mean. Lights that face out of the scene, such as the sun's on a roof over the room that is seen, all but vanish.
-/// Cost: candidates times 256. Depends on the camera.
+/// mean. One that is chosen k times carries a part of its flux each time, but all of its area: its copies lie in one
+/// place, and k disks of a k-th of the area would be k times as bright nearby. Lights that face out of the scene, such
+/// as the sun's on a roof over the room that is seen, all but vanish. Cost: candidates times 256. Depends on the
+/// camera.
 class ChooseVirtualLights {
  public:
   static constexpr const char* name = "screen/choose_virtual_lights";

@@ -162,8 +162,9 @@ VirtualLightsCpu chosen_virtual_lights_cpu(const EmbreeScene& embree, const Emit
     reached += weight[i];
     for (; next < reached && int(chosen.lights.size()) < count; next += step) {
       VirtualLight light = all.lights[i];
-      light.flux *= float(step / weight[i]);
-      light.area_m2 *= float(step / weight[i]);
+      const auto share = float(step / weight[i]);
+      light.flux *= share;
+      light.area_m2 *= std::max(share, 1.0f);  // chosen more than once: together they stand where one stood
       chosen.lights.push_back(light);
       chosen.reflected += int(int(i) < all.reflected);
     }

@@ -35,7 +35,8 @@ void main() {
   // Candidates stand for one part in candidate_count each, the chosen ones for one in count.
   float share = probability > 0.0 ? 1.0 / (float(count) * probability) : 0.0;
   l.flux *= share;
-  l.area_m2 *= share;
+  // One that is chosen more than once stays as large as it is: its copies lie in one place and are one light together.
+  l.area_m2 *= max(share, 1.0);
   chosen_lights[first + k] = l;
   ranges[first + k] = vec2(k == 0 ? 0.0 : place_of(float(k) / float(count)),
                            k == count - 1 ? float(candidate_count) : place_of(float(k + 1) / float(count)));

@@ -55,7 +55,8 @@ class InjectedFlux : public GlTest {
     glm::dvec3 sum(0.0);
     for (int i = 0; i < n * n; ++i) {
       // Equal cells of the unit square, folded onto the triangle.
-      float u = (float(i % n) + 0.37f) / float(n), v = (float(i / n) + 0.61f) / float(n);
+      const int column = i % n, row = i / n;
+      float u = (float(column) + 0.37f) / float(n), v = (float(row) + 0.61f) / float(n);
       if (u + v > 1.0f) {
         u = 1.0f - u;
         v = 1.0f - v;

@@ -26,7 +26,7 @@ std::vector<double> probabilities(const std::vector<VirtualLight>& candidates, c
     flux[i] = luminance(glm::dvec3(candidates[i].flux));
     for (unsigned k = 1; k <= 256; ++k) {
       const glm::ivec2 at = glm::ivec2(halton(k) * glm::dvec2(seen.size));
-      const size_t pixel = size_t(at.x + seen.size.x * at.y);
+      const size_t pixel = size_t(at.x) + size_t(seen.size.x) * size_t(at.y);
       if (seen.position[pixel].w == 0.0f) continue;
       // The shading normal alone counts here.
       const glm::dvec3 w = glm::dvec3(candidates[i].position) - glm::dvec3(seen.position[pixel]);
@@ -160,7 +160,8 @@ TEST_F(ChooseVirtualLightsTest, LightsThatFaceAwayAreRare) {
   Seen seen = stage_seen(context());
   std::vector<VirtualLight> candidates;
   for (int i = 0; i < 800; ++i) {
-    const glm::vec3 at(-1.5f + 3.0f * float(i % 40) / 40.0f, 2.9f, -1.5f + 3.0f * float(i / 40) / 20.0f);
+    const int column = i % 40, row = i / 40;
+    const glm::vec3 at(-1.5f + 3.0f * float(column) / 40.0f, 2.9f, -1.5f + 3.0f * float(row) / 20.0f);
     candidates.push_back(light_at(at, {0, i % 2 == 0 ? -1.0f : 1.0f, 0}));
   }
   std::shuffle(candidates.begin(), candidates.end(), std::mt19937(5));
@@ -205,7 +206,7 @@ TEST_F(ChooseVirtualLightsTest, OneOfOneIsNoChoice) {
   const auto plain = lights_of(context(), scene, {100, {}, Sampling::halton});
   const auto lights = frame.virtual_lights().lights;
   ASSERT_EQ(lights.size(), 100u);
-  EXPECT_EQ(std::memcmp(plain.data(), lights.data(), 100 * sizeof(VirtualLight)), 0);
+  EXPECT_EQ(std::memcmp(plain.data(), lights.data(), lights.size() * sizeof(VirtualLight)), 0);
 }
 
 TEST(Hilbert, VisitsEveryCellAndNeighboursFollow) {

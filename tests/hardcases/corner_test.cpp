@@ -1,0 +1,99 @@
+// A camera close to a virtual light in a corner (accuracy.md: corner): the singularity of a light near a surface must
+// not show.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "reference/metrics.h"
+#include "reference/path_tracer.h"
+#include "tests/support/frame_picture.h"
+#include "tests/support/gl_test.h"
+#include "tests/support/invariance.h"
+#include "tests/support/volume_scenes.h"
+
+namespace volgi::test {
+namespace {
+
+using screen::GiMode;
+
+constexpr glm::ivec2 kSize{64, 64};
+constexpr glm::vec3 kCorner{-1.0f};
+
+/// A room of 2 m, one of whose corners a spot lights.
+Scene lit_corner() {
+  Scene scene;
+  add_box_inside(scene, add_material(scene, {0.8f, 0.7f, 0.6f}), glm::vec3(0.0f), glm::vec3(1.0f));
+  const glm::vec3 lamp(0.1f, -0.1f, 0.2f);
+  scene.lights.push_back(spot_light(lamp, kCorner - lamp, 12.0f, 16.0f, glm::vec3(5.0f)));
+  return scene;
+}
+
+float maximum(const Image& image) {
+  float most = 0.0f;
+  for (const glm::vec3& p : image.pixels) most = std::max({most, p.x, p.y, p.z});
+  return most;
+}
+
+class Corner : public GlTest {
+ protected:
+  static screen::FrameOptions options(GiMode gi, int count) {
+    screen::FrameOptions o;
+    o.gi = gi;
+    o.size = kSize;
+    o.light = screen::LightPart::indirect;
+    o.backend = tested_backend();
+    o.virtual_lights.count = count;
+    return o;
+  }
+
+  /// `distance_m` in front of the virtual light nearest to the corner, of those chosen for a camera that sees it.
+  static Camera close_to_a_light(const Scene& scene, int count, float distance_m, glm::vec3 target) {
+    screen::Frame frame(scene, options(GiMode::vpl, count));
+    gl::PassTimer timer(context().software(), false);
+    frame.render(look_at_camera(glm::vec3(0.3f), kCorner, 1.0f, scene.bounds_min, scene.bounds_max), timer);
+    const VirtualLightList list = frame.virtual_lights();
+    const auto nearer = [](const shared::VirtualLight& a, const shared::VirtualLight& b) {
+      return glm::distance(a.position, kCorner) < glm::distance(b.position, kCorner);
+    };
+    const shared::VirtualLight light = *std::min_element(list.lights.begin(), list.lights.end(), nearer);
+    return look_at_camera(light.position + distance_m * light.normal, target, 1.2f, scene.bounds_min, scene.bounds_max);
+  }
+
+  /// Of means of 4 x 4 pixels, lest its noise be the maximum.
+  static float brightest_by_paths(const Scene& scene, const Camera& camera, std::optional<int> bounces) {
+    PathTracerOptions o;
+    o.size = kSize;
+    o.samples_per_pixel = 32;
+    o.max_bounces = bounces;
+    o.light = PathTracerOptions::Light::indirect;
+    return maximum(box_downsample(path_trace(scene, camera, o).color, kSize.x / 4, kSize.y / 4));
+  }
+};
+
+// Measured: 1.32 at most (vpl and negative), 1.35 (val), 1.0 (hybrid), where lights that are chosen several times
+// stay as large as they are; 2.2 and 3.4 times where they shrank.
+TEST_F(Corner, NoPixelIsTwiceAsBrightAsTheBrightest) {
+  const Scene scene = lit_corner();
+  for (const auto& [count, distance_m, target] :
+       {std::tuple(1024, 0.05f, kCorner), {1024, 0.005f, glm::vec3(-0.7f, -1.0f, -0.9f)}, {64, 0.05f, kCorner}}) {
+    const Camera camera = close_to_a_light(scene, count, distance_m, target);
+    const float first_bounce = brightest_by_paths(scene, camera, 1);
+    const float all_bounces = brightest_by_paths(scene, camera, std::nullopt);
+    for (const auto& [mode, name] : {std::pair(GiMode::vpl, "vpl"),
+                                     {GiMode::negative, "negative"},
+                                     {GiMode::val, "val"},
+                                     {GiMode::hybrid, "hybrid"}}) {
+      if (tested_backend() == screen::Backend::cpu && mode != GiMode::hybrid) continue;  // no volume: the same passes
+      const Image image = render(context(), scene, camera, options(mode, count)).image;
+      EXPECT_GT(mean_light(image), 0.0);
+      const float ratio = maximum(image) / (mode == GiMode::hybrid ? all_bounces : first_bounce);
+      EXPECT_LT(ratio, 2.0f) << name << ", " << count << " lights, " << distance_m << " m";
+      RecordProperty(std::string(name) + "_" + std::to_string(count) + "_" + std::to_string(int(1000.0f * distance_m)),
+                     std::to_string(ratio));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace volgi::test
