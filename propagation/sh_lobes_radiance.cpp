@@ -36,7 +36,7 @@ LobeSum::LobeSum(const LeafNumbers& numbers, int coefficients)
 
 float* LobeSum::leaf(int number) {
   std::vector<float>& sums = leaves_[size_t(number)];
-  if (sums.empty()) sums.assign(size_t(coefficients_ * kLobeBands * kLobeLeafCells), 0.0f);
+  if (sums.empty()) sums.assign(size_t(coefficients_) * kLobeBands * kLobeLeafCells, 0.0f);
   return sums.data();
 }
 
@@ -77,7 +77,7 @@ void LobeSum::clear() {
 size_t LobeSum::bytes() const {
   size_t floats = 0;
   for (const std::vector<float>& sums : leaves_) floats += sums.size();
-  return floats * sizeof(float) + leaves_.size() * sizeof(leaves_[0]);
+  return floats * sizeof(float) + leaves_.size() * sizeof(std::vector<float>);
 }
 
 }  // namespace volgi

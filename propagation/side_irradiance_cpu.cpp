@@ -12,7 +12,7 @@ constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
 
 using Around = std::bitset<27>;  // the 3^3 cells around one
 
-size_t around_index(glm::ivec3 d) { return size_t((d.x + 1) + 3 * (d.y + 1) + 9 * (d.z + 1)); }
+size_t around_index(glm::ivec3 d) { return size_t(d.x + 1) + 3 * size_t(d.y + 1) + 9 * size_t(d.z + 1); }
 glm::ivec3 around_offset(size_t k) { return glm::ivec3(k % 3, (k / 3) % 3, k / 9) - 1; }
 
 /// Cells around `centre` that three steps lead to without crossing a face that stops everything: a corner of the cube

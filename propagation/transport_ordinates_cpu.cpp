@@ -262,7 +262,7 @@ void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* lea
     const glm::ivec3 along(x, y, z);
     const glm::ivec3 block = positive * along + (1 - positive) * (n - 1 - along);
     const int sides = sides_of_block_[size_t(block_index(n, block))];
-    const size_t by_y = size_t(x + n.x * z), by_z = size_t(x + n.x * y);
+    const size_t by_y = size_t(x) + size_t(n.x) * size_t(z), by_z = size_t(x) + size_t(n.x) * size_t(y);
     unsigned char& y_lit = flow.y_lit[by_y];
     unsigned char& z_lit = flow.z_lit[by_z];
     if (x_lit == 0 && y_lit == 0 && z_lit == 0 && (sides < 0 || sends_[size_t(sides)] == 0)) continue;

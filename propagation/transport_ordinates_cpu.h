@@ -48,7 +48,7 @@ class OrdinatesTransport : public Transport {
   void pack_sides();
   void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
   void sweep_row(int octant, int y, int z, RadianceLeaves* leaves);
-  size_t face_floats() const { return size_t(sweep::kBlockFace * constants_.octets * sweep::kOctet); }
+  size_t face_floats() const { return sweep::kBlockFace * size_t(constants_.octets) * sweep::kOctet; }
 
   const VoxelGrid& voxels_;
   OrdinateChoice choice_;

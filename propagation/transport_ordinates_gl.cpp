@@ -43,7 +43,7 @@ std::vector<std::string> OrdinatesTransportGl::defines(bool radiance) const {
 /// SharesBlock of sweep.comp.glsl.
 gl::Buffer OrdinatesTransportGl::pack_shares(const OrdinateSet& set) const {
   const bool characteristic = rule_ == Ordinates::characteristic;
-  const auto n = size_t(3 * texels_);
+  const size_t n = 3 * size_t(texels_);
   std::vector<glm::vec4> emitted(n), downwind(characteristic ? 3 * n : n), weight(n), direction(n);
   for (size_t value = 0; value < 3 * set.directions.size(); ++value) {
     const size_t d = value / 3, k = value / 4;

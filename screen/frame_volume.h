@@ -17,7 +17,7 @@ struct VolumeReport {
   size_t sides = 0;
   BounceReport bounces;
   glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
-  glm::vec3 lost{0.0f};      // part of it that found no side [W]
+  glm::vec3 lost{0.0f};      // and what found no side, or looks out of the grid at its rim [W]
   size_t memory_bytes = 0;
 };
 

@@ -70,9 +70,9 @@ void SideColumns::fill(const VoxelGrid& voxels, const VoxelGrid::Leaf& leaf) {
     for (int face = 0; face < 6; ++face) {
       if (!shared::has_side(own, face)) continue;
       const int axis = shared::face_axis(face), front = voxels.sides()[side++].front;
-      std::uint8_t& to =
-          columns_[size_t(face + 6 * front)][byte(face, cell[shared::axis_b(axis)], cell[shared::axis_c(axis)]) +
-                                             size_t(origin[axis] >> kLeafShift)];
+      std::uint8_t& to = columns_[size_t(face) + 6 * size_t(front)]
+                                 [byte(face, cell[shared::axis_b(axis)], cell[shared::axis_c(axis)]) +
+                                  size_t(origin[axis] >> kLeafShift)];
       to = std::uint8_t(to | 1u << local[axis]);
     }
   }

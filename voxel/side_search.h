@@ -46,7 +46,7 @@ class SideColumns {
   };
   Columns of_face(int face, int front) const {
     const Layout& l = layout_[size_t(face >> 1)];
-    const size_t kind = size_t(face + 6 * front);
+    const size_t kind = size_t(face) + 6 * size_t(front);
     const size_t first = byte(face, 0, 0);
     return {columns_[kind].data() + first, around_[kind].data() + first, l.stride, l.stride * l.columns_b};
   }
@@ -62,7 +62,7 @@ class SideColumns {
   void spread(int kind);
   size_t byte(int face, int b, int c) const {
     const Layout& l = layout_[size_t(face >> 1)];
-    return size_t(kPad + l.stride * (kPad + b + l.columns_b * (kPad + c)));
+    return size_t(kPad) + size_t(l.stride) * (size_t(kPad + b) + size_t(l.columns_b) * size_t(kPad + c));
   }
 
   std::array<Layout, 3> layout_;

@@ -53,7 +53,7 @@ class TriangleArea {
   /// @param area  of the surface, whatever it stops.
   void add(const SlicedMaterial& m, double area, Cell& to) const {
     area *= double(m.stopped);
-    to.area += std::int64_t(area + 0.5);
+    to.area += std::int64_t(std::floor(area + 0.5));
     to.albedo += glm::i64vec3(area * glm::dvec3(m.albedo) + 0.5);
     to.normal += glm::i64vec3(glm::floor(area * glm::dvec3(t_.normal) + 0.5));
     to.occupancy = std::max(to.occupancy, m.stopped);
@@ -90,7 +90,7 @@ void BlockCells::add(const std::vector<AreaRecord>& areas) {
   for (const AreaRecord& record : areas) {
     // What lies up to half a cell outside belongs to the grid's outermost cells.
     const glm::ivec3 cell = glm::clamp(unpack_cell(record.cell), glm::ivec3(0), s_.grid.cells - 1);
-    if (cell >> kLeafShift != block_) continue;
+    if ((cell >> kLeafShift) != block_) continue;
     if (!of_triangle || record.triangle != triangle) of_triangle.emplace(s_, s_.triangles[record.triangle]);
     triangle = record.triangle;
     of_triangle->add(record, cells_[size_t(leaf_offset(cell))]);

@@ -164,7 +164,7 @@ void draw_text(Image& image, int left, int top, const std::string& text) {
   const int quads =
       stb_easy_font_print(0.0f, 0.0f, copy.data(), nullptr, vertices.data(), int(vertices.size() * sizeof(Vertex)));
   for (int q = 0; q < quads; ++q) {
-    const Vertex &a = vertices[size_t(4 * q)], &c = vertices[size_t(4 * q + 2)];
+    const Vertex &a = vertices[4 * size_t(q)], &c = vertices[4 * size_t(q) + 2];
     fill(image, left + kTextScale * int(a.x), top + kTextScale * int(a.y), kTextScale * int(c.x - a.x),
          kTextScale * int(c.y - a.y), kText);
   }

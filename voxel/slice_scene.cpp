@@ -13,6 +13,7 @@ namespace {
 // Vertices farther than this from the grid's origin, five grids of 256 cells away, are pulled in: 64-bit integers hold
 // all products then. Scenes lie inside their grid.
 constexpr int kFarthest = 1 << 19;
+constexpr int kFarthestCells = kFarthest / SLICE_STEPS;
 
 /// Where the triangles of each mesh start in the GPU's numbering.
 struct MeshRange {
@@ -104,7 +105,7 @@ void place_triangles(SlicedScene& s, const std::vector<MeshRange>& ranges) {
       const glm::uvec3 corners = mesh.triangles[t.triangle];
       for (int k = 0; k < 3; ++k) {
         const glm::vec3 cell = shared::cell_from_world(s.grid, mesh.positions[corners[k]]);
-        const glm::vec3 bound(float(kFarthest / SLICE_STEPS));
+        const glm::vec3 bound(static_cast<float>(kFarthestCells));
         t.vertex[size_t(k)] = shared::slice_vertex(glm::clamp(cell, -bound, bound));
       }
       t.normal = front_normal(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]);

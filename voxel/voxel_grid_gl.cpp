@@ -3,8 +3,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include <cstring>
-
 namespace volgi {
 namespace {
 
@@ -55,7 +53,7 @@ VoxelGridGl upload(const VoxelGrid& voxels) {
 void upload(const VoxelGrid& voxels, VoxelGridGl& into) {
   const Grid& grid = voxels.grid();
   const size_t cell_bytes = sizeof(glm::uvec2) * cell_count(grid);
-  if (into.grid_block.bytes() == 0 || std::memcmp(&into.grid, &grid, sizeof(Grid)) != 0) {
+  if (into.grid_block.bytes() == 0 || !same_grid(into.grid, grid)) {
     into.grid = grid;
     into.grid_block = gl::Buffer(sizeof(Grid), &grid);
   }

@@ -69,44 +69,53 @@ nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
   transport.set_dense(true);
   transport.begin(sent);
   for (int i = 0; i < 4; ++i) transport.pass(received, true);  // both states are touched
-  std::vector<double> times;
-  for (int i = 0; i < repeats; ++i) {
-    times.push_back(time_ms([&] {
-                      for (int pass = 0; pass < iterations; ++pass) transport.pass(received, true);
-                    }) /
-                    iterations);
-  }
   const size_t state = cell_count(voxels.grid()) * 12 * sizeof(float);
   const size_t read = state + received.size() * sizeof(glm::vec4);
-  const double copy = copy_ms(read, std::max(repeats, 5));
-  const double pass = median(times);
+  Copying copying(read);
+  copying.run();
+  // In turn: on a shared machine memory is slow for seconds at a time.
+  std::vector<double> passes, copies, ratios;
+  for (int i = 0; i < std::max(repeats, 5); ++i) {
+    const auto of_one = [&](const auto& once) {
+      return time_ms([&] {
+               for (int k = 0; k < iterations; ++k) once();
+             }) /
+             iterations;
+    };
+    passes.push_back(of_one([&] { transport.pass(received, true); }));
+    copies.push_back(of_one([&] { copying.run(); }));
+    ratios.push_back(passes.back() / copies.back());
+  }
   return {{"cells", cells},
           {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
           {"iterations", iterations},
-          {"ms_per_iteration", pass},
-          {"copy_ms", copy},
-          {"ratio", pass / copy},
+          {"ms_per_iteration", median(passes)},
+          {"copy_ms", median(copies)},
+          {"ratio", median(ratios)},
+          {"ratio_range", {*std::ranges::min_element(ratios), *std::ranges::max_element(ratios)}},
           {"bytes", 2 * read}};
 }
 
-nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations) {
+nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations, int repeats) {
   Powers received(sent.size(), glm::vec4(0.0f));
   ConservativeTransport transport(voxels, 1);
-  const auto run = [&](bool dense) {
-    transport.set_dense(dense);
-    std::vector<double> times;
-    for (int i = 0; i < 4; ++i) {
-      transport.begin(sent);
-      times.push_back(time_ms([&] {
-                        for (int pass = 0; pass < iterations; ++pass) transport.pass(received, true);
-                      }) /
-                      iterations);
-    }
-    times.erase(times.begin());  // memory is fetched in the first
-    return median(times);
+  ConservativeTransport dense_transport(voxels, 1);
+  dense_transport.set_dense(true);
+  const auto ms_a_pass = [&](ConservativeTransport& t) {
+    t.begin(sent);
+    return time_ms([&] {
+             for (int pass = 0; pass < iterations; ++pass) t.pass(received, true);
+           }) /
+           iterations;
   };
-  const double dense = run(true);
-  const double sparse = run(false);
+  std::vector<double> dense, sparse, speedups;
+  for (int i = -1; i < std::max(repeats, 5); ++i) {
+    const double d = ms_a_pass(dense_transport), s = ms_a_pass(transport);
+    if (i < 0) continue;  // memory is fetched in the first
+    dense.push_back(d);
+    sparse.push_back(s);
+    speedups.push_back(d / s);
+  }
   const size_t lit_leaves = transport.lobes().leaves().size();
   glm::dvec3 shares(0.0);
   transport.begin(sent);
@@ -114,10 +123,11 @@ nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> 
     transport.pass(received, true);
     shares += lit_shares(transport) / double(iterations);
   }
-  return {{"sparse_ms", sparse},
-          {"dense_ms", dense},
+  return {{"sparse_ms", median(sparse)},
+          {"dense_ms", median(dense)},
           {"lit_shares", {{"leaves", shares[0]}, {"rows", shares[1]}, {"cells", shares[2]}}},
-          {"speedup", dense / sparse},
+          {"speedup", median(speedups)},
+          {"speedup_range", {*std::ranges::min_element(speedups), *std::ranges::max_element(speedups)}},
           {"leaves", transport.numbers().count()},
           {"lit_leaves", lit_leaves},
           {"iterations", iterations}};

@@ -151,21 +151,56 @@ double exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-/// Speed of copying [GB/s], read and write counted.
-double copy_gb_per_s(size_t bytes, int repeats) { return 2.0 * double(bytes) / (copy_ms(bytes, repeats) * 1e6); }
+/// Passes through a box whose walls all send, so that every cell has light to move.
+class Passes {
+ public:
+  Passes(int cells, const SchemeOptions& scheme, int passes)
+      : box_(cells),
+        transport_(make_transport(box_.voxels, scheme)),
+        passes_(passes),
+        sent_(box_.voxels.side_count(), glm::vec4(1.0f)),
+        received_(box_.voxels.side_count(), glm::vec4(0.0f)) {}
 
-double pass_ms(const Box& box, const SchemeOptions& scheme, int passes, int repeats) {
-  const auto transport = make_transport(box.voxels, scheme);
-  // All walls send, so that every cell has light to move.
-  const std::vector<glm::vec4> sent(box.voxels.side_count(), glm::vec4(1.0f));
-  std::vector<glm::vec4> received(box.voxels.side_count(), glm::vec4(0.0f));
-  BounceRules rules;
-  rules.iterations = passes;
-  const bool sweeps = !transport->iterative();
-  return median_ms(repeats, [&] {
+  void run() {
+    BounceRules rules;
+    rules.iterations = passes_;
     BounceReport report;
-    for (int i = 0; i < (sweeps ? passes : 1); ++i) transport->carry(sent, received, rules, report);
-  });
+    const int times = transport_->iterative() ? 1 : passes_;
+    for (int i = 0; i < times; ++i) transport_->carry(sent_, received_, rules, report);
+  }
+
+ private:
+  Box box_;
+  std::unique_ptr<Transport> transport_;
+  int passes_;
+  std::vector<glm::vec4> sent_, received_;
+};
+
+/// Times of what takes turns, [round][which], after a round that warms up.
+std::vector<std::vector<double>> times_in_turn(std::vector<std::unique_ptr<Passes>>& all, int rounds) {
+  std::vector<std::vector<double>> times;
+  for (int round = -1; round < rounds; ++round) {
+    std::vector<double> of_round;
+    of_round.reserve(all.size());
+    for (auto& passes : all) of_round.push_back(time_ms([&] { passes->run(); }));
+    if (round >= 0) times.push_back(std::move(of_round));
+  }
+  return times;
+}
+
+/// Median over the rounds of each round's exponent: on a shared machine some rounds are slow.
+double exponent_in_turn(const std::vector<double>& x, const std::vector<std::vector<double>>& rounds) {
+  std::vector<double> exponents;
+  exponents.reserve(rounds.size());
+  for (const auto& times : rounds) exponents.push_back(exponent(x, times));
+  return median(exponents);
+}
+
+double median_of(const std::vector<std::vector<double>>& rounds, size_t which) {
+  std::vector<double> times;
+  times.reserve(rounds.size());
+  for (const auto& round : rounds) times.push_back(round[which]);
+  return median(times);
 }
 
 nlohmann::json growth(Scheme scheme_kind, int largest_grid, int repeats) {
@@ -175,26 +210,36 @@ nlohmann::json growth(Scheme scheme_kind, int largest_grid, int repeats) {
   scheme.ordinates = Ordinates::step;
   scheme.coarse_start = false;
   if (scheme_kind != Scheme::ordinates) scheme.directions.reset();
-  nlohmann::json rows = nlohmann::json::array();
-  std::vector<double> cells, times;
+  const int rounds = std::max(repeats, 5);
+  std::vector<int> edges;
+  std::vector<double> cells;
+  std::vector<std::unique_ptr<Passes>> grids;
+  // As many passes for all, and enough for light to fill the largest.
+  const int count = scheme_kind == Scheme::ordinates ? 8 : 2 * largest_grid;
   for (int n = 32; n <= largest_grid; n += n < 64 ? 16 : 32) {
-    const Box box(n);
-    const int count_of_passes = scheme_kind == Scheme::ordinates ? 8 : 2 * n;  // until light fills the box, and on
-    const double ms = pass_ms(box, scheme, count_of_passes, repeats) / count_of_passes;
-    const double count = double(n) * n * n;
-    const double copy = copy_gb_per_s(size_t(count) * 48, repeats);
-    rows.push_back({{"cells", n}, {"ms_a_pass", ms}, {"ns_a_cell", ms * 1e6 / count}, {"copy_GB_per_s", copy}});
-    cells.push_back(count);
-    times.push_back(ms);
+    edges.push_back(n);
+    cells.push_back(double(n) * n * n);
+    grids.push_back(std::make_unique<Passes>(n, scheme, count));
   }
-  const Box box(32);
-  std::vector<double> passes, pass_times;
+  const auto by_cells = times_in_turn(grids, rounds);
+  nlohmann::json rows = nlohmann::json::array();
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const double ms = median_of(by_cells, i) / count;
+    const size_t bytes = size_t(cells[i]) * 48;
+    Copying copying(bytes);
+    const double copy = 2.0 * double(bytes) / (median_ms(rounds, [&] { copying.run(); }) * 1e6);
+    rows.push_back(
+        {{"cells", edges[i]}, {"ms_a_pass", ms}, {"ns_a_cell", ms * 1e6 / cells[i]}, {"copy_GB_per_s", copy}});
+  }
+  std::vector<double> passes;
+  std::vector<std::unique_ptr<Passes>> runs;
   for (int p : {64, 128, 256}) {
     passes.push_back(p);
-    pass_times.push_back(pass_ms(box, scheme, p, repeats));
+    runs.push_back(std::make_unique<Passes>(32, scheme, p));
   }
-  return {
-      {"rows", rows}, {"exponent_cells", exponent(cells, times)}, {"exponent_passes", exponent(passes, pass_times)}};
+  return {{"rows", rows},
+          {"exponent_cells", exponent_in_turn(cells, by_cells)},
+          {"exponent_passes", exponent_in_turn(passes, times_in_turn(runs, rounds))}};
 }
 
 }  // namespace

@@ -23,11 +23,20 @@ template <typename F>
 double median_ms(int repeats, const F& run) {
   run();
   std::vector<double> times;
+  times.reserve(size_t(repeats));
   for (int i = 0; i < repeats; ++i) times.push_back(time_ms(run));
   return median(times);
 }
 
-/// Time in which all threads together copy `bytes`, median [ms].
-double copy_ms(size_t bytes, int repeats);
+/// Memory that all threads copy together, in pieces of the size of a leaf of lobes, as propagation moves it.
+class Copying {
+ public:
+  explicit Copying(size_t bytes);
+  void run();
+
+ private:
+  size_t pieces_;
+  std::vector<char> from_, to_;
+};
 
 }  // namespace volgi::app

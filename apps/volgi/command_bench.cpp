@@ -125,7 +125,7 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
   VolumeCpu volume(atrium, lit);
   volume.voxelize();
   volume.light_in();  // the sun's light, as the paper's figure has it
-  r["sparse_over_dense"] = bench_sparse(volume.voxels(), volume.flux().punctual, 16);
+  r["sparse_over_dense"] = bench_sparse(volume.voxels(), volume.flux().punctual, 16, frames);
   if (json) return;
   fmt::print("{}", propagation_table(r));
   const auto& copy = r["conservative_over_copy"];

@@ -187,12 +187,12 @@ std::vector<SlicePlane> InspectCommand::planes(const GridSummary& s) const {
     check_inside("--slice " + slice, s, plane);
     return {plane};
   }
-  std::vector<int> cell;
+  std::vector<int> cell(3);
   for (int axis = 0; axis < 3; ++axis)
-    cell.push_back(int((std::int64_t(s.index_box.min()[axis]) + s.index_box.max()[axis]) / 2));
+    cell[size_t(axis)] = int((std::int64_t(s.index_box.min()[axis]) + s.index_box.max()[axis]) / 2);
   if (!at.empty()) cell = parse_indices(at);
   if (cell.size() != 3) usage(fmt::format("--at {}: takes the index X,Y,Z of a cell, such as 8,4,12", at));
-  const std::vector<SlicePlane> three{{0, cell[0]}, {1, cell[1]}, {2, cell[2]}};
+  std::vector<SlicePlane> three{{0, cell[0]}, {1, cell[1]}, {2, cell[2]}};
   for (const SlicePlane plane : three) check_inside("--at " + at, s, plane);
   return three;
 }

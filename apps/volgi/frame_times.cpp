@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cmath>
-#include <regex>
+#include <string_view>
 
 #include "apps/volgi/parse_number.h"
 #include "core/error.h"
@@ -49,10 +49,13 @@ FrameTimes parse_frame_times(const std::string& text) {
 
 std::filesystem::path frame_path(const std::filesystem::path& out, int frame) {
   const std::string name = out.filename().string();
-  std::smatch pattern;
-  if (std::regex_search(name, pattern, std::regex("%(0([1-9]))?d"))) {
-    const int digits = pattern[2].matched ? pattern[2].str()[0] - '0' : 1;
-    return out.parent_path() / fmt::format("{}{:0{}}{}", pattern.prefix().str(), frame, digits, pattern.suffix().str());
+  for (size_t at = name.find('%'); at != std::string::npos; at = name.find('%', at + 1)) {
+    const std::string_view rest = std::string_view(name).substr(at + 1);
+    const bool padded = rest.size() >= 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' && rest[2] == 'd';
+    if (!padded && !rest.starts_with('d')) continue;
+    const int digits = padded ? rest[1] - '0' : 1;
+    return out.parent_path() /
+           fmt::format("{}{:0{}}{}", name.substr(0, at), frame, digits, rest.substr(padded ? 3 : 1));
   }
   return out.parent_path() / fmt::format("{}.{:04}{}", out.stem().string(), frame, out.extension().string());
 }

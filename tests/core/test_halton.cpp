@@ -59,8 +59,8 @@ TEST(Halton, DirectionsAreEvenInTheCone) {
       ++quarter[(d.x > 0.0f ? 1 : 0) + (d.z > 0.0f ? 2 : 0)];
       inner += 2.0 * std::pow(std::sin(0.5 * angle), 2.0) < 0.5 * height ? 1 : 0;
     }
-    for (const int q : quarter) EXPECT_NEAR(q, count / 4, 8) << angle_deg;
-    EXPECT_NEAR(inner, count / 2, 8) << angle_deg;
+    for (const int q : quarter) EXPECT_NEAR(q, 0.25 * count, 8) << angle_deg;
+    EXPECT_NEAR(inner, 0.5 * count, 8) << angle_deg;
   }
 }
 
@@ -106,7 +106,7 @@ TEST(EmitterPoints, CarryThePowerOfTheirSurface) {
   }
   const auto points = emitters.points(512);
   const auto in_corner = [](const EmitterPoint& p) { return p.position.x < 0.5f && p.position.z < 0.5f; };
-  EXPECT_NEAR(double(std::count_if(points.begin(), points.end(), in_corner)), 512 / 8, 6);
+  EXPECT_NEAR(double(std::count_if(points.begin(), points.end(), in_corner)), 512.0 / 8.0, 6);
 }
 
 TEST(EmitterPoints, DoubleSidedOnesSendFromBothSides) {

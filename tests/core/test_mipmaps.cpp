@@ -45,7 +45,7 @@ TEST(MipChain, KeepsTheMeanAndThePlaceOfEveryTexel) {
     const int n = chain[k].width;
     for (int y = 0; y < n; ++y) {
       for (int x = 0; x < n; ++x) {
-        const glm::vec4 t = chain[k].texels[size_t(y * n + x)];
+        const glm::vec4 t = chain[k].texels[size_t(y) * size_t(n) + size_t(x)];
         EXPECT_NEAR(t.x, (float(x) + 0.5f) / float(n), 0.004f);  // a ramp stays where it is; 8 bits
         EXPECT_NEAR(t.y, (float(y) + 0.5f) / float(n), 0.004f);
         EXPECT_NEAR(t.z, 0.5f, 1e-6f);

@@ -387,7 +387,7 @@ TEST_F(Hostile, Images) {
   expect_refused("missing file 'none.png'");
   test::write_bytes(folder / "none.png", "not a picture");
   expect_refused("image 0 'none.png'");
-  test::write_bytes(folder / "none.png", "GIF89a\1\0\1\0\0\0\0");
+  test::write_bytes(folder / "none.png", std::string("GIF89a\1\0\1\0\0\0\0", 13));
   expect_refused("image 0 'none.png'");
   const std::string good = test::png(2, 2, std::vector<std::uint8_t>(16, 200));
   test::write_bytes(folder / "none.png", good.substr(0, good.size() / 2));

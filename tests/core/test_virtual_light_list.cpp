@@ -29,7 +29,7 @@ std::string error_of(const std::function<void()>& action, ExitCode code) {
   try {
     action();
   } catch (const Error& error) {
-    const std::string message = error.what();
+    std::string message = error.what();
     EXPECT_EQ(error.code(), code) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
     EXPECT_LT(message.size(), 400u) << message;
@@ -67,7 +67,7 @@ TEST(VirtualLightList, ReadsBackEveryBit) {
   list.lights[1].normal = glm::vec3(0.0f);
   write_virtual_lights(folder / "lights.json", list);
   const VirtualLightList back = read_virtual_lights(folder / "lights.json");
-  EXPECT_EQ(std::memcmp(&back.world_origin, &list.world_origin, sizeof list.world_origin), 0);
+  EXPECT_EQ(back.world_origin, list.world_origin);
   ASSERT_EQ(back.lights.size(), list.lights.size());
   EXPECT_EQ(std::memcmp(back.lights.data(), list.lights.data(), list.lights.size() * sizeof list.lights[0]), 0);
 }
@@ -84,7 +84,7 @@ TEST(VirtualLightList, RefusesToWriteWhatItWouldNotRead) {
     VirtualLightList list{glm::dvec3(0), {some_light(), some_light()}};
     spoil(list.lights[1]);
     const auto file = folder / "lights.json";
-    const std::string text = error_of([&] { write_virtual_lights(file, list); }, ExitCode::cannot_write);
+    std::string text = error_of([&] { write_virtual_lights(file, list); }, ExitCode::cannot_write);
     EXPECT_FALSE(std::filesystem::exists(file));
     return text;
   };

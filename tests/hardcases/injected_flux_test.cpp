@@ -17,7 +17,8 @@ namespace {
 
 class InjectedFlux : public GlTest {
  protected:
-  static void expect_flux(const Scene& scene, glm::vec3 flux) {
+  /// @param roofed  something lit looks out of the grid at its rim: what it reflects leaves the scene, and is counted.
+  static void expect_flux(const Scene& scene, glm::vec3 flux, bool roofed = false) {
     for (int cells : {16, 32, 64}) {
       screen::FrameOptions options;
       options.size = {16, 16};
@@ -25,10 +26,12 @@ class InjectedFlux : public GlTest {
       options.volume.bounces = 1;
       const Camera camera = framing_camera(scene.bounds_min, scene.bounds_max);
       const screen::FrameReport report = render(context(), scene, camera, options).report;
-      EXPECT_EQ(report.volume.lost, glm::vec3(0.0f)) << cells;
+      if (!roofed) {
+        EXPECT_EQ(report.volume.lost, glm::vec3(0.0f)) << cells;
+      }
+      const glm::vec3 counted = report.volume.injected + report.volume.lost;
       for (int band = 0; band < 3; ++band) {
-        EXPECT_NEAR(report.volume.injected[band], flux[band], 0.02f * flux[band])
-            << "grid " << cells << " band " << band;
+        EXPECT_NEAR(counted[band], flux[band], 0.02f * flux[band]) << "grid " << cells << " band " << band;
       }
     }
   }
@@ -109,7 +112,7 @@ TEST_F(InjectedFlux, CornellAgainstShadowRays) {
 
 TEST_F(InjectedFlux, RoomAgainstShadowRays) {
   const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/room.glb");
-  expect_flux(scene, traced_flux(scene, 6000.0));
+  expect_flux(scene, traced_flux(scene, 6000.0), true);
 }
 
 }  // namespace

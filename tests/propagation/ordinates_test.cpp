@@ -143,9 +143,10 @@ TEST(CellTransfer, CharacteristicIsTheExactOverlap) {
       glm::dvec3 share(0.0);
       double track = 0.0;
       for (int i = 0; i < kLattice * kLattice; ++i) {
+        const int column = i % kLattice, row = i / kLattice;
         glm::dvec3 to_face(1.0);  // along each axis, in cell edges
-        to_face[(in + 1) % 3] = (i % kLattice + 0.5) / kLattice;
-        to_face[(in + 2) % 3] = (i / kLattice + 0.5) / kLattice;
+        to_face[(in + 1) % 3] = (column + 0.5) / kLattice;
+        to_face[(in + 2) % 3] = (row + 0.5) / kLattice;
         const glm::dvec3 length = to_face / d;
         const int out = length.x <= length.y && length.x <= length.z ? 0 : length.y <= length.z ? 1 : 2;
         share[out] += 1.0 / (kLattice * kLattice);

@@ -20,7 +20,7 @@ Voxels one_side(glm::vec3 normal) {
   Voxels v;
   v.grid = unit_grid(kN);
   v.grid.cell_size_m = 1.0f;
-  v.cells.assign(size_t(kN * kN * kN), glm::uvec2(0));
+  v.cells.assign(size_t(kN) * kN * kN, glm::uvec2(0));
   const int middle = shared::cell_index(v.grid, glm::ivec3(kN / 2));
   for (int i = middle + 1; i < kN * kN * kN; ++i) v.cells[size_t(i)].x = 1;
   v.cells[size_t(middle)] = {0, 1};

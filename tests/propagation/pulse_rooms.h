@@ -146,7 +146,7 @@ class PlainPulse {
 
  private:
   double* at(std::vector<double>& lobes, glm::ivec3 cell, int band) const {
-    return &lobes[size_t((3 * shared::cell_index(voxels_.grid(), cell) + band) * n_)];
+    return &lobes[(3 * size_t(shared::cell_index(voxels_.grid(), cell)) + size_t(band)) * size_t(n_)];
   }
   double row(int face, int k, const double* lobe) const {
     double r = 0.0;

@@ -70,7 +70,7 @@ void expect_figures(std::istream& lines) {
   std::map<std::string, double> own;
   int checked = 0;
   while (lines >> scene >> light >> region >> key >> value) {
-    const std::string which = scene + " " + light + " " + region;
+    const std::string which = (std::ostringstream() << scene << ' ' << light << ' ' << region).str();
     if (which != last) {
       const Pictures& p = pictures(scene, light);
       const Mask mask = region_mask(*region_from_name(region), *p.reference.layers);

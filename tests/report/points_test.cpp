@@ -55,7 +55,7 @@ TEST_F(PointsFileTest, FailedPointsAreTriedAgainAndTheLastLineOfAKeyCounts) {
 
 TEST_F(PointsFileTest, AFolderThatIsNotThereIsNamed) {
   try {
-    PointsFile(folder_ / "nowhere" / "points.jsonl");
+    const PointsFile file(folder_ / "nowhere" / "points.jsonl");
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::cannot_write);

@@ -26,6 +26,7 @@ Json point(const std::string& technique, const std::string& varied, double time_
 
 std::vector<std::string> labels(const std::vector<const Judged*>& judged) {
   std::vector<std::string> out;
+  out.reserve(judged.size());
   for (const Judged* j : judged) out.push_back(j->label);
   return out;
 }

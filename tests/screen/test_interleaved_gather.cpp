@@ -125,7 +125,7 @@ TEST_F(InterleavedGather, EveryLightCountsOnceOnAPlane) {
     const Pictures interleaved = lit.by(n, 0.0f);
     for (int y = 16; y < 176; ++y) {
       for (int x = 16; x < 240; ++x) {
-        const size_t i = size_t(y * 256 + x);
+        const size_t i = size_t(y) * 256 + size_t(x);
         if (lit.seen.position[i].w == 0.0f) continue;
         // The floor's edges cut windows: there a subset may come from one side.
         const glm::vec3 at = lit.seen.position[i];

@@ -225,7 +225,7 @@ TEST_F(NegativeLightsTest, ThePapersStandOnPixelsOfTheHaltonSequence) {
   const auto negative = placed.negative.download();
   for (unsigned k = 0; k < 60; ++k) {
     const glm::ivec2 pixel = glm::ivec2(halton(k + 1) * glm::dvec2(size));
-    const size_t i = size_t(pixel.x + size.x * pixel.y);
+    const size_t i = size_t(pixel.x) + size_t(size.x) * size_t(pixel.y);
     EXPECT_EQ(negative[k].position, glm::vec3(placed.seen.position[i])) << k;
     EXPECT_EQ(negative[k].exponent, 1.0f);
     glm::dvec3 irradiance(0.0), direction(0.0);

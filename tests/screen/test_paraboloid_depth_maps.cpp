@@ -161,7 +161,8 @@ TEST_F(ParaboloidDepthMaps, TheSurfaceOfTheLightDoesNotHideIt) {
   const glm::vec3 origin(7.3f, 2.1f, -3.7f);
   Mesh& mesh = add_mesh(scene, grey);
   for (int i = 0; i < 100; ++i) {
-    append_quad(mesh, origin + 0.1f * (float(i % 10) * u + float(i / 10) * v), 0.1f * u, 0.1f * v);
+    const int column = i % 10, row = i / 10;
+    append_quad(mesh, origin + 0.1f * (float(column) * u + float(row) * v), 0.1f * u, 0.1f * v);
   }
   update_bounds(scene);
   std::vector<shared::VirtualAreaLight> lights;

@@ -55,7 +55,7 @@ std::vector<Texel> texels_of(const gl::Context& context, const Scene& scene,
   maps.bind(light);
   out.bind_storage(0);
   gl::dispatch({side, side, layers}, {8, 8, 1});
-  const std::vector<Texel> texels = out.download<Texel>(count);
+  std::vector<Texel> texels = out.download<Texel>(count);
   glDeleteProgram(program);
   return texels;
 }

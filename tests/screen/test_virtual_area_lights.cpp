@@ -222,7 +222,8 @@ TEST_F(VirtualAreaLights, BoundTheirLights) {
     for (const float area : {0.001f, 0.06f}) {
       std::vector<VirtualLight> lights;
       for (int i = 0; i < 28; ++i) {
-        lights.push_back(light_at(0.2f * float(i % 7) * u + 0.3f * float(i / 7) * v, normal, area));
+        const int column = i % 7, row = i / 7;
+        lights.push_back(light_at(0.2f * float(column) * u + 0.3f * float(row) * v, normal, area));
       }
       const VirtualAreaLight val = cluster(context(), 1, lights).area_lights[0];
       EXPECT_NEAR(val.area_m2, area < 0.01f ? 1.2f * 0.9f : 28.0f * area, 1e-5f);

@@ -202,7 +202,7 @@ TEST_F(VirtualLightGatherTest, DepthEdgesBetweenParallelPlanesAreListed) {
   const VirtualLightListGl lights = list_of({light_at({0.1f, 0.9f, 0.1f}, {0, -1, 0})});
   const Gathered every = gathered(seen, lights, every_pixel());
   const Gathered picture = gathered(seen, lights, {2, 0.2f, 10.0f, 10.0f});
-  const auto on_floor = [&](int x, int y) { return seen.position[size_t(y * 97 + x)].y < 0.1f; };
+  const auto on_floor = [&](int x, int y) { return seen.position[size_t(y) * 97 + size_t(x)].y < 0.1f; };
   int edges = 0;
   for (int y = 0; y < 61; ++y) {
     for (int x = 0; x < 97; ++x) {
@@ -213,7 +213,7 @@ TEST_F(VirtualLightGatherTest, DepthEdgesBetweenParallelPlanesAreListed) {
       }
       if (!differs) continue;
       ++edges;
-      EXPECT_EQ(picture.indirect[size_t(y * 97 + x)], every.indirect[size_t(y * 97 + x)]) << x << ' ' << y;
+      EXPECT_EQ(picture.indirect[size_t(y) * 97 + size_t(x)], every.indirect[size_t(y * 97 + x)]) << x << ' ' << y;
     }
   }
   EXPECT_GT(edges, 50);

@@ -29,7 +29,7 @@ double largest_move(const std::vector<VirtualLight>& before, const std::vector<V
 
 TEST_F(VirtualLightsInMotion, MoveAsTheirLightDoes) {
   Scene scene = colourful_room();
-  for (Light light : one_of_each()) {
+  for (const Light& light : one_of_each()) {
     if (light.type == Light::Type::directional) continue;
     scene.lights = {light};
     Frames frames(context(), scene, {1024, {}, Sampling::halton});
@@ -59,7 +59,7 @@ TEST_F(VirtualLightsInMotion, OfTwoLightsAreThoseOfEach) {
       auto alone = lights_of(context(), scene, options);
       ASSERT_EQ(alone.size(), 100u);
       for (VirtualLight& l : alone) l.source = int(k);
-      EXPECT_EQ(std::memcmp(alone.data(), &together[100 * k], 100 * sizeof(VirtualLight)), 0);
+      EXPECT_EQ(std::memcmp(alone.data(), &together[100 * k], alone.size() * sizeof(VirtualLight)), 0);
     }
   }
 }

@@ -18,7 +18,9 @@ class BoxRadiosity {
 
   int patches_on_edge() const { return n_; }
   size_t patch_count() const { return 6 * size_t(n_) * size_t(n_); }
-  size_t index(int wall, int b, int c) const { return size_t(b + n_ * (c + n_ * wall)); }
+  size_t index(int wall, int b, int c) const {
+    return size_t(b) + size_t(n_) * (size_t(c) + size_t(n_) * size_t(wall));
+  }
   double patch_area() const { return 4.0 / double(n_ * n_); }
 
   /// Irradiance of every patch from the radiosity of all.

@@ -79,8 +79,9 @@ TEST_F(FineLattice, PolesDoNotVanish) {
       const int places = 49;
       for (int i = 0; i < places; ++i) {
         glm::vec3 half(0.5f * width * h), centre(0.0f);
-        centre[(axis + 1) % 3] = h * (float(i % 7) + random()) / 7.0f;
-        centre[(axis + 2) % 3] = h * (float(i / 7) + random()) / 7.0f;
+        const int column = i % 7, row = i / 7;
+        centre[(axis + 1) % 3] = h * (float(column) + random()) / 7.0f;
+        centre[(axis + 2) % 3] = h * (float(row) + random()) / 7.0f;
         half[axis] = 1.5f;
         Scene scene;
         add_box_inside(scene, add_material(scene, glm::vec3(0.5f)), centre, half);

@@ -147,7 +147,7 @@ Json measure_point(const ReportScene& scene, const Setting& setting, const std::
 std::string write_reference_picture(const ReportScene& scene, const std::string& light,
                                     const ReportReference& reference, const fs::path& folder) {
   fs::create_directories(folder / "pictures");
-  const std::string name = fmt::format("pictures/{}-{}.png", scene.name, light);
+  std::string name = fmt::format("pictures/{}-{}.png", scene.name, light);
   write_png(folder / name, reference.file.color, exposure_of(reference));
   return name;
 }

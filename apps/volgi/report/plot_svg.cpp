@@ -81,7 +81,8 @@ std::string techniques_points(const Verdict& v, const Axis& x, const Axis& y) {
   std::string out;
   for (size_t t = 0; t < techniques.size(); ++t) {
     const char* color = kColors[t % kColors.size()];
-    const double column = kLeft + double(t % 5) * 130, row = kHeight + double(t / 5) * kLegendRow;
+    const size_t line = t / 5;
+    const double column = kLeft + double(t % 5) * 130, row = kHeight + double(line) * kLegendRow;
     out += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"5\" fill=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>", column,
                        row, color, column + 9, row + 4, escaped(techniques[t]));
     for (const Judged& j : v.judged) {

@@ -22,7 +22,7 @@ using Json = nlohmann::json;
 Json listed_scenes(const fs::path& data) {
   std::ifstream file(data / "scenes.json");
   if (!file) return Json::array();
-  const Json list = Json::parse(file, nullptr, false);
+  Json list = Json::parse(file, nullptr, false);
   if (!list.is_array()) throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": not a list of scenes");
   return list;
 }

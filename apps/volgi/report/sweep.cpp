@@ -27,7 +27,7 @@ std::vector<std::string> strings(const Json& object, const char* key, std::vecto
 }
 
 std::vector<std::string> pairs_of(const Json& object, const char* key) {
-  const std::vector<std::string> words = words_of(object.value(key, std::string()));
+  std::vector<std::string> words = words_of(object.value(key, std::string()));
   if (words.size() % 2 != 0) throw std::runtime_error(std::string(key) + ": options come as --name value");
   return words;
 }
