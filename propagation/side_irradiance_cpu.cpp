@@ -50,6 +50,8 @@ struct Mean {
   glm::vec4 clamped() const { return glm::vec4(glm::max(power, 0.0f) / area_m2, 1.0f); }
 };
 
+float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, shared::face_axis(s.face), s.area_m2); }
+
 }  // namespace
 
 SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const Bounces& bounces) {
@@ -58,9 +60,10 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
   std::vector<glm::vec3> direct(count), indirect(count);  // E A [W]
   for_each_side(count, [&](size_t i) {
     const shared::Side& s = sides[i];
+    const int axis = shared::face_axis(s.face);
     const auto power = [&](const glm::vec4& received, const glm::vec4& own) {
-      return s.area_m2 *
-             shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, s.area_m2, s.face_m2);
+      return weight_of(s) * shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, axis,
+                                                    s.area_m2, s.face_m2);
     };
     direct[i] = power(bounces.received_direct()[i], flux.emitted[i]);
     indirect[i] = power(bounces.received_indirect()[i], flux.punctual[i]);
@@ -76,8 +79,8 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
       const size_t last = own.x + shared::count_bits(own.y & 63u);
       for (size_t s = own.x; s < last; ++s) {
         if (glm::dot(sides[s].normal, sides[i].normal) < kLikeNormals) continue;
-        first.add(direct[s], sides[s].area_m2);
-        rest.add(indirect[s], sides[s].area_m2);
+        first.add(direct[s], weight_of(sides[s]));
+        rest.add(indirect[s], weight_of(sides[s]));
       }
     }
     mean.direct[i] = first.clamped();

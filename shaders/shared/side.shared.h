@@ -55,13 +55,29 @@ SHARED_FUNCTION vec3 side_sent_power(vec3 flux, vec3 albedo, float area_m2, floa
 SHARED_FUNCTION vec3 side_returned_fraction(vec3 albedo, float area_m2, float face_m2) {
   return face_m2 * albedo / side_denominator(albedo, area_m2, face_m2);
 }
+// A staircase of normal n lights itself: its faces across `axis` have s (s-|n_axis|)/(s+1) of what the surface sends per
+// area from the other faces, and s less that from the world. Treads of a slightly turned wall hardly see its steps, steps
+// are half walled in. (Exchange between two families of faces in proportion to |n_a||n_b|; exact where one component is
+// zero. Over the families the mean is s-1, and 1.)
+SHARED_FUNCTION float staircase_own_share(vec3 normal, int axis) {
+  float s = staircase_factor(normal);
+  return s * (s - abs(normal[axis])) / (s + 1.0f);
+}
+SHARED_FUNCTION float staircase_world_share(vec3 normal, int axis) {
+  return staircase_factor(normal) - staircase_own_share(normal, axis);
+}
 // Irradiance of the surface [W m^-2]. It belongs to the surface's plane, so the staircase here is that of its normal: a
 // side near an edge that stands for more surface than its face is not darker for that. Can be negative on tilted
-// surfaces.
-SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo, vec3 normal, float area_m2,
+// surfaces. In means a side counts as side_weight().
+SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo, vec3 normal, int axis, float area_m2,
                                      float face_m2) {
-  float s = staircase_factor(normal);
-  return (received_power * (s / face_m2) - (s - 1.0f) * flux / area_m2) / (1.0f + (s - 1.0f) * albedo);
+  float own = staircase_own_share(normal, axis), world = staircase_world_share(normal, axis);
+  return (received_power * (staircase_factor(normal) / face_m2) - own * flux / area_m2) / (world + own * albedo);
+}
+// Area times what it sees of the world: with E the mean weighted so, the net power of a plane's sides is A (B0 - (1-rho) E),
+// exactly where it is black or E the same all over it.
+SHARED_FUNCTION float side_weight(vec3 normal, int axis, float area_m2) {
+  return area_m2 * staircase_world_share(normal, axis);
 }
 // A side stands for at least this part of a plane through its face. What a black side sends is flux * m/A: without a
 // least A, flux put down where little surface is counted grows without bound; with it at most to 4 s times. It costs

@@ -13,19 +13,59 @@ constexpr float kFace = 0.04f;  // m^2
 const vec3 kNormals[] = {vec3(0, 1, 0), vec3(0.6f, 0, -0.8f), vec3(0.70710678f, 0.70710678f, 0),
                          vec3(0.57735027f, -0.57735027f, 0.57735027f)};
 
+/// Calls visit(axis, share of the faces) for the families of a plane.
+template <class Visit>
+void for_families(const vec3& normal, const Visit& visit) {
+  for (int axis = 0; axis < 3; ++axis) visit(axis, std::abs(normal[axis]) / staircase_factor(normal));
+}
+
+// A plane whose irradiance is E everywhere: each family receives its share of the world and of the plane's own light,
+// reads E, and the plane's net power is A (B0 - (1-rho) E).
 TEST(Side, NetPowerIsExactOnPlanes) {
+  const vec3 irradiance(3.0f, 1.0f, 0.1f);
   for (const vec3& albedo : kAlbedos) {
     for (const vec3& normal : kNormals) {
       const float area = kFace / staircase_factor(normal);
       const vec3 flux = area * vec3(3.0f, 0.0f, 0.2f);  // A B0
-      const vec3 received(0.5f, 0.2f, 0.01f);
-      const vec3 sent =
-          side_sent_power(flux, albedo, area, kFace) + side_returned_fraction(albedo, area, kFace) * received;
-      const vec3 irradiance = side_irradiance(received, flux, albedo, normal, area, kFace);
+      vec3 net(0.0f);
+      for_families(normal, [&](int axis, float share) {
+        const vec3 received = area * (staircase_world_share(normal, axis) * irradiance +
+                                      staircase_own_share(normal, axis) * (flux / area + albedo * irradiance));
+        const vec3 read = side_irradiance(received, flux, albedo, normal, axis, area, kFace);
+        for (int band = 0; band < 3; ++band) EXPECT_NEAR(read[band], irradiance[band], 1e-5f);
+        net += share * (side_sent_power(flux, albedo, area, kFace) +
+                        (side_returned_fraction(albedo, area, kFace) - 1.0f) * received);
+      });
       const vec3 expected = flux - (vec3(1.0f) - albedo) * area * irradiance;
-      for (int band = 0; band < 3; ++band) EXPECT_NEAR(sent[band] - received[band], expected[band], 1e-6f);
+      for (int band = 0; band < 3; ++band) EXPECT_NEAR(net[band], expected[band], 1e-6f);
     }
   }
+}
+
+// On black planes, whatever each family receives: E is their mean by side_weight().
+TEST(Side, NetPowerIsExactInTheMeanOverBlackFaces) {
+  for (const vec3& normal : kNormals) {
+    const float area = kFace / staircase_factor(normal);
+    const vec3 flux(area * 3.0f);
+    float net = 0.0f, irradiance = 0.0f, weights = 0.0f;
+    for_families(normal, [&](int axis, float share) {
+      const vec3 received(0.5f + 0.3f * float(axis));
+      const float weight = share * side_weight(normal, axis, area);
+      irradiance += weight * side_irradiance(received, flux, vec3(0.0f), normal, axis, area, kFace).x;
+      weights += weight;
+      net += share * (side_sent_power(flux, vec3(0.0f), area, kFace).x - received.x);
+    });
+    EXPECT_NEAR(weights, area, 1e-6f);
+    EXPECT_NEAR(net, flux.x - area * irradiance / weights, 2e-6f);
+  }
+}
+
+// Half of a step's view is its tread, however slightly the wall is turned; the tread hardly sees the step.
+TEST(Side, StepsOfSlightlyTurnedWallsAreWalledIn) {
+  const vec3 normal = glm::normalize(vec3(0.01f, 1.0f, 0.0f));
+  EXPECT_NEAR(staircase_own_share(normal, 0), 0.5f, 0.01f);
+  EXPECT_NEAR(staircase_own_share(normal, 1), 0.005f, 0.0005f);
+  EXPECT_EQ(staircase_own_share(vec3(0, 0, -1), 2), 0.0f);
 }
 
 TEST(Side, BlackSurfaceReturnsNothing) {
@@ -58,8 +98,10 @@ TEST(Side, FurnaceHoldsAtAnyTilt) {
     }
     for (const vec3& normal : kNormals) {
       const float area = kFace / staircase_factor(normal);
-      EXPECT_NEAR(side_irradiance(received, vec3(area * 2.0f), albedo, normal, area, kFace).x / radiosity.x, 1.0f,
-                  3e-6f);
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(side_irradiance(received, vec3(area * 2.0f), albedo, normal, axis, area, kFace).x / radiosity.x,
+                    1.0f, 3e-6f);
+      }
     }
   }
 }
@@ -68,7 +110,7 @@ TEST(Side, UprightSurfaceIsPlain) {
   const vec3 albedo(0.4f);
   EXPECT_NEAR(side_sent_power(vec3(2.0f), albedo, kFace, kFace).x, 2.0f, 1e-6f);
   EXPECT_NEAR(side_returned_fraction(albedo, kFace, kFace).x, 0.4f, 1e-7f);
-  EXPECT_NEAR(side_irradiance(vec3(0.3f), vec3(2.0f), albedo, vec3(0, 0, 1), kFace, kFace).x, 0.3f / kFace, 1e-5f);
+  EXPECT_NEAR(side_irradiance(vec3(0.3f), vec3(2.0f), albedo, vec3(0, 0, 1), 2, kFace, kFace).x, 0.3f / kFace, 1e-5f);
   EXPECT_FLOAT_EQ(staircase_factor(glm::normalize(vec3(1, -1, 1))), 1.7320508f);
 }
 

@@ -179,8 +179,8 @@ TEST_P(OrdinatesCpu, Furnace) {
   }
   for (size_t i = 0; i < total.size(); ++i) {
     const shared::Side& s = voxels.sides()[i];
-    const glm::vec3 irradiance =
-        shared::side_irradiance(glm::vec3(total[i]), s.area_m2 * radiosity, s.albedo, s.normal, s.area_m2, s.face_m2);
+    const glm::vec3 irradiance = shared::side_irradiance(glm::vec3(total[i]), s.area_m2 * radiosity, s.albedo, s.normal,
+                                                         shared::face_axis(s.face), s.area_m2, s.face_m2);
     for (int band = 0; band < 3; ++band) {
       const float radiance = (radiosity[band] + s.albedo[band] * irradiance[band]) / glm::pi<float>();
       EXPECT_NEAR(radiance * (1.0f - s.albedo[band]), 1.0f, 1e-4f);
