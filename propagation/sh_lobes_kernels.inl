@@ -351,13 +351,14 @@ void rescale_to(const float* gathered, std::uint64_t rows, float* out, LeafLight
   light = {};
   for (int band = 0; band < kLobeBands; ++band) {
     Tally tally;
-    for_rows(rows, [&](int at) __attribute__((always_inline)) {
-      Row l[Order::kCoefficients];
-      for (int k = 0; k < Order::kCoefficients; ++k) l[k] = load(gathered + lobe_block(k, band) + at);
-      tally.add(at, l[0]);
-      rescale_row<Order>(l);
-      for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
-    });
+    for_rows(
+        rows, [&](int at) __attribute__((always_inline)) {
+          Row l[Order::kCoefficients];
+          for (int k = 0; k < Order::kCoefficients; ++k) l[k] = load(gathered + lobe_block(k, band) + at);
+          tally.add(at, l[0]);
+          rescale_row<Order>(l);
+          for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
+        });
     tally.finish(band, light);
   }
 }
@@ -387,14 +388,15 @@ void gather_rescale_to(const float* own, const float* const beside[6], const flo
   for (int band = 0; band < kLobeBands; ++band) {
     const Around around = of_band(own, beside, band);
     Tally tally;
-    for_rows(rows, [&](int at) __attribute__((always_inline)) {
-      fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
-      Row l[Order::kCoefficients];
-      gather_row<Order>(around, at, kAllOpen, l);
-      tally.add(at, l[0]);
-      rescale_row<Order>(l);
-      for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
-    });
+    for_rows(
+        rows, [&](int at) __attribute__((always_inline)) {
+          fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
+          Row l[Order::kCoefficients];
+          gather_row<Order>(around, at, kAllOpen, l);
+          tally.add(at, l[0]);
+          rescale_row<Order>(l);
+          for (int k = 0; k < Order::kCoefficients; ++k) store_leaf<kStream>(out + lobe_block(k, band) + at, l[k]);
+        });
     tally.finish(band, light);
   }
 }

@@ -23,8 +23,8 @@ struct VolumeOptions {
   /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (techniques, "Composition").
   enum class Source { lights, first_bounce } source = Source::lights;
   // Of first_bounce (core/visibility/virtual_lights_cpu.h, propagation/side_gather.h):
-  int virtual_lights = 1024;         // at most kMostVirtualLights
-  int virtual_light_candidates = 4;  // times as many to choose from; 1: as they come
+  int virtual_lights = 1024;                // at most kMostVirtualLights
+  int virtual_light_candidates = 4;         // times as many to choose from; 1: as they come
   std::optional<int> virtual_light_stride;  // each side takes every so many of them; none: automatic_stride()
   static constexpr int kMostVirtualLights = 65536;
   /// Refused above it [bytes]; none: no limit.

@@ -37,7 +37,8 @@ SHARED_FUNCTION uint side_index(uvec2 cell_sides, int face) {
 }
 
 // Of staircase factors: as far in front of a surface, in cells, as the cell that sees it has its centre; less a little,
-// so that a wall on the grid's rim looks out of the grid and a cell behind it does not reach in front, despite rounding.
+// so that a wall on the grid's rim looks out of the grid and a cell behind it does not reach in front, despite
+// rounding.
 #define DEPOSIT_REACH 0.49f
 #define DEPOSIT_FIRST 8.0f  // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
 
@@ -55,10 +56,10 @@ SHARED_FUNCTION vec3 side_sent_power(vec3 flux, vec3 albedo, float area_m2, floa
 SHARED_FUNCTION vec3 side_returned_fraction(vec3 albedo, float area_m2, float face_m2) {
   return face_m2 * albedo / side_denominator(albedo, area_m2, face_m2);
 }
-// A staircase of normal n lights itself: its faces across `axis` have s (s-|n_axis|)/(s+1) of what the surface sends per
-// area from the other faces, and s less that from the world. Treads of a slightly turned wall hardly see its steps, steps
-// are half walled in. (Exchange between two families of faces in proportion to |n_a||n_b|; exact where one component is
-// zero. Over the families the mean is s-1, and 1.)
+// A staircase of normal n lights itself: its faces across `axis` have s (s-|n_axis|)/(s+1) of what the surface sends
+// per area from the other faces, and s less that from the world. Treads of a slightly turned wall hardly see its steps,
+// steps are half walled in. (Exchange between two families of faces in proportion to |n_a||n_b|; exact where one
+// component is zero. Over the families the mean is s-1, and 1.)
 SHARED_FUNCTION float staircase_own_share(vec3 normal, int axis) {
   float s = staircase_factor(normal);
   return s * (s - abs(normal[axis])) / (s + 1.0f);
@@ -74,8 +75,8 @@ SHARED_FUNCTION vec3 side_irradiance(vec3 received_power, vec3 flux, vec3 albedo
   float own = staircase_own_share(normal, axis), world = staircase_world_share(normal, axis);
   return (received_power * (staircase_factor(normal) / face_m2) - own * flux / area_m2) / (world + own * albedo);
 }
-// Area times what it sees of the world: with E the mean weighted so, the net power of a plane's sides is A (B0 - (1-rho) E),
-// exactly where it is black or E the same all over it.
+// Area times what it sees of the world: with E the mean weighted so, the net power of a plane's sides is A (B0 -
+// (1-rho) E), exactly where it is black or E the same all over it.
 SHARED_FUNCTION float side_weight(vec3 normal, int axis, float area_m2) {
   return area_m2 * staircase_world_share(normal, axis);
 }
