@@ -171,11 +171,13 @@ TEST_F(SideIrradianceCpu, ClampsTheMeanOnly) {
   const VoxelGrid voxels(grid, sides);
   SideFlux flux{Powers(3, glm::vec4(0.0f)), {glm::vec4(1.0f), glm::vec4(0.0f), glm::vec4(0.0f)}};
   const float s = shared::staircase_factor(sides[0].normal), area = sides[0].area_m2;
+  const float own = shared::staircase_own_share(sides[0].normal, 1);
+  const float world = shared::staircase_world_share(sides[0].normal, 1);
   for (float share : {0.9f, 0.1f}) {
     Bounces bounces(std::make_unique<MatrixTransport>(
         MatrixTransport::Matrix{{0, double(share), 0}, {double(share), 0, 0}, {0, 0, 0}}, voxels));
     const SideIrradiance e = after(voxels, flux, bounces);
-    const float shaded = -(s - 1.0f) / area, lit = share * s / area;
+    const float shaded = -own / (world * area), lit = share * s / (world * area);
     EXPECT_NEAR(e.indirect[0].x, std::max(0.5f * (shaded + lit), 0.0f), 1e-4f);
     EXPECT_NEAR(e.indirect[1].x, std::max((shaded + lit) / 3.0f, 0.0f), 1e-4f);
     EXPECT_NEAR(e.indirect[2].x, 0.5f * lit, 1e-4f);
