@@ -54,6 +54,9 @@ std::vector<std::unique_ptr<LeafWalls>> collect_walls(const VoxelGrid& voxels, c
     auto walls = std::make_unique<LeafWalls>();
     if (outside) close_outside(*walls, voxels.grid(), lowest);
     if (leaf != nullptr) add_sides(*walls, voxels, *leaf);
+    for (size_t row = 0; row < walls->closed.size(); ++row) {
+      if (walls->closed[row] != 0) walls->walled_rows |= std::uint64_t(3) << (row & ~size_t(1));
+    }
     all[size_t(n)] = std::move(walls);
   }
   return all;

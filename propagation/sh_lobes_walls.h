@@ -27,6 +27,7 @@ struct LeafWalls {
   /// By row: byte f has a bit for each cell whose face f lets nothing through on the fast path: all faces with sides,
   /// and those between cells in and outside of the grid.
   std::array<std::uint64_t, 64> closed{};
+  std::uint64_t walled_rows = 0;  // with something closed, and the other of their pair (2n, 2n + 1)
   std::vector<SideRow> rows;
   std::vector<SideThere> sides;
 };

@@ -112,18 +112,23 @@ void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received,
   const float* ahead = lobes().leaf(std::min(number + 2, numbers().count() - 1));
   fetch_faces(number);
   const LeafWalls* walls = walls_[size_t(number)].get();
-  if (walls == nullptr && !half_steps_) {
-    kernels_.gather_rescale(own, beside, ahead, rows, out, wave_.streams(), light);
-    return;
-  }
+  const std::uint64_t walled = half_steps_ ? rows : walls != nullptr ? rows & walls->walled_rows : 0;
+  light = {};
+  if (rows != walled) kernels_.gather_rescale(own, beside, ahead, rows & ~walled, out, wave_.streams(), light);
+  if (walled == 0) return;
   alignas(64) float gathered[9 * kLobeBands * kLobeLeafCells];
   if (half_steps_) {
     kernels_.gather_half(own, beside, walls != nullptr ? walls->closed.data() : kAllOpen.data(), gathered);
   } else {
-    kernels_.gather(own, beside, walls->closed.data(), ahead, rows, gathered);
+    kernels_.gather(own, beside, walls->closed.data(), ahead, walled, gathered);
   }
-  if (walls != nullptr) hit_sides(number, *walls, rows, received, reflect_hits, gathered);
-  kernels_.rescale(gathered, rows, out, wave_.streams(), light);
+  if (walls != nullptr) hit_sides(number, *walls, walled, received, reflect_hits, gathered);
+  LeafLight beside_walls;
+  kernels_.rescale(gathered, walled, out, wave_.streams(), beside_walls);
+  for (int band = 0; band < kLobeBands; ++band) light.power[band] += beside_walls.power[band];
+  light.lit_rows |= beside_walls.lit_rows;
+  light.lit_low |= beside_walls.lit_low;
+  light.lit_high |= beside_walls.lit_high;
 }
 
 /// The next leaf's neighbours at +x and +y have not been read in this pass: asks for what it will want of them.
