@@ -38,9 +38,10 @@ function(volgi_room name)
   set_property(GLOBAL APPEND PROPERTY VOLGI_TARGETS volgi_${name})
 endfunction()
 
-# volgi_test(NAME LABELS... SOURCES... LIBS...): one GoogleTest program, one ctest entry per test case.
+# volgi_test(NAME LABELS... SOURCES... LIBS... [FILTER googletest's]): one GoogleTest program, one ctest entry per test
+# case.
 function(volgi_test name)
-  cmake_parse_arguments(T "" "TIMEOUT" "LABELS;SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(T "" "TIMEOUT;FILTER" "LABELS;SOURCES;LIBS" ${ARGN})
   if(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
   endif()
@@ -50,6 +51,6 @@ function(volgi_test name)
   if(NOT T_LABELS)
     set(T_LABELS cpu)
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${T_FILTER}" DISCOVERY_TIMEOUT 60
     PROPERTIES LABELS "${T_LABELS}" TIMEOUT ${T_TIMEOUT})
 endfunction()

@@ -116,6 +116,9 @@ void LobeVolume::swap(LobeVolume& other) noexcept {
   rows_written_.swap(other.rows_written_);
 }
 
-size_t LobeVolume::bytes() const { return chunks_.size() * chunk_bytes() + table_.size() * sizeof(float*); }
+size_t LobeVolume::bytes() const {
+  return chunks_.size() * chunk_bytes() + table_.size() * (sizeof(float*) + sizeof(int)) +
+         rows_written_.size() * (sizeof(std::uint64_t) + sizeof(int));
+}
 
 }  // namespace volgi

@@ -22,16 +22,13 @@ void LobeWave::find_beside(int number, const float* beside[6]) const {
 std::uint64_t LobeWave::rows_reached(int number) const {
   if (dense_) return kAllRows;
   const std::uint64_t own = lit_[size_t(number)].any;
-  std::uint64_t rows = own | own << 8 | own >> 8 | (own & ~kHighY) << 1 | (own & ~kLowY) >> 1;
-  for (int face = 0; face < 6; ++face) {
+  const auto there = [&](int face) {
     const int n = numbers_.beside(number, face);
-    if (n < 0) continue;
-    const LitRows& there = lit_[size_t(n)];
-    const std::uint64_t at_face[6] = {there.any >> 56,          there.any << 56, (there.any & kHighY) >> 7,
-                                      (there.any & kLowY) << 7, there.high,      there.low};
-    rows |= at_face[face];
-  }
-  return rows;
+    return n < 0 ? LitRows{} : lit_[size_t(n)];
+  };
+  return own | own << 8 | own >> 8 | (own & ~kHighY) << 1 | (own & ~kLowY) >> 1 |  // within the leaf
+         there(0).any >> 56 | there(1).any << 56 | (there(2).any & kHighY) >> 7 | (there(3).any & kLowY) << 7 |
+         there(4).high | there(5).low;
 }
 
 void LobeWave::write_only(int number, std::uint64_t rows) {

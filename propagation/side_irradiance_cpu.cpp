@@ -39,15 +39,15 @@ Around reachable_cells(const VoxelGrid& voxels, glm::ivec3 centre) {
   return reached | edge;
 }
 
-/// Area-weighted mean of E over sides; `weighted` is E A per side.
+/// Mean of E over sides; `weighted` is E times the weight of the side.
 struct Mean {
-  glm::vec3 power{0.0f};
-  float area_m2 = 0.0f;
-  void add(glm::vec3 weighted, float area) {
-    power += weighted;
-    area_m2 += area;
+  glm::vec3 sum{0.0f};
+  float weights_m2 = 0.0f;
+  void add(glm::vec3 weighted, float weight_m2) {
+    sum += weighted;
+    weights_m2 += weight_m2;
   }
-  glm::vec4 clamped() const { return glm::vec4(glm::max(power, 0.0f) / area_m2, 1.0f); }
+  glm::vec4 clamped() const { return glm::vec4(glm::max(sum, 0.0f) / weights_m2, 1.0f); }
 };
 
 float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, shared::face_axis(s.face), s.area_m2); }
@@ -57,16 +57,16 @@ float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, sh
 SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const Bounces& bounces) {
   const std::vector<shared::Side>& sides = voxels.sides();
   const size_t count = sides.size();
-  std::vector<glm::vec3> direct(count), indirect(count);  // E A [W]
+  std::vector<glm::vec3> direct(count), indirect(count);  // weighted [W]
   for_each_side(count, [&](size_t i) {
     const shared::Side& s = sides[i];
     const int axis = shared::face_axis(s.face);
-    const auto power = [&](const glm::vec4& received, const glm::vec4& own) {
+    const auto weighted = [&](const glm::vec4& received, const glm::vec4& own) {
       return weight_of(s) * shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, axis,
                                                     s.area_m2, s.face_m2);
     };
-    direct[i] = power(bounces.received_direct()[i], flux.emitted[i]);
-    indirect[i] = power(bounces.received_indirect()[i], flux.punctual[i]);
+    direct[i] = weighted(bounces.received_direct()[i], flux.emitted[i]);
+    indirect[i] = weighted(bounces.received_indirect()[i], flux.punctual[i]);
   });
   SideIrradiance mean{std::vector<glm::vec4>(count), std::vector<glm::vec4>(count)};
   for_each_side(count, [&](size_t i) {

@@ -148,6 +148,7 @@ void ConservativeTransport::hit_sides(int number, const LeafWalls& walls, std::u
   const float step = half_steps_ ? 0.5f : 1.0f;
   const std::uint64_t lit = half_steps_ ? kAllRows : wave_.rows_lit(number);
   for (const SideRow& row : walls.rows) {
+    // What is dark is hit by nothing, but may let through what comes from beside it.
     if (((row.partly ? rows : lit) >> row.row & 1u) == 0) continue;
     const LeafWalls::SideThere* there = &walls.sides[row.first];
     const bool one = (row.cells & (row.cells - 1)) == 0;  // as where walls across z are

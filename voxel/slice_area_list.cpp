@@ -1,7 +1,6 @@
 #include "voxel/slice_area_list.h"
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
+#include "voxel/slice_blocks.h"
 
 namespace volgi::slicing {
 
@@ -10,7 +9,9 @@ namespace {
 /// Lists what triangles cover of the cells of one block.
 class BlockAreas {
  public:
-  BlockAreas(const SlicedScene& s, std::uint32_t block, AreaList::Scratch& scratch)
+  using Scratch = AreaList::Scratch;
+
+  BlockAreas(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
       : s_(s), first_cell_(s.block_cell(block)), areas_(first_cell_, scratch) {
     for (int axis = 0; axis < 3; ++axis) windows_[axis] = block_window(s, first_cell_, axis);
   }
@@ -87,17 +88,6 @@ class BlockAreas {
 
 }  // namespace
 
-BlockTable list_areas(const SlicedScene& s) {
-  BlockTable table(s.first.empty() ? 0 : s.first.size() - 1);
-  tbb::enumerable_thread_specific<std::unique_ptr<AreaList::Scratch>> scratch(
-      [] { return std::make_unique<AreaList::Scratch>(); });
-  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
-    const std::uint32_t block = s.occupied[i];
-    BlockAreas areas(s, block, *scratch.local());
-    for (std::uint32_t k = s.first[block]; k < s.first[block + 1]; ++k) areas.add(s.binned[k]);
-    table[block] = areas.collect();
-  });
-  return table;
-}
+BlockTable list_areas(const SlicedScene& s) { return for_all_blocks<BlockAreas>(s); }
 
 }  // namespace volgi::slicing

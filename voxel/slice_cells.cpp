@@ -135,8 +135,7 @@ CellVolumes make_cell_volumes(const SlicedScene& s, const BlockTable& areas) {
   using Cells = std::array<Cell, kBlockCells>;
   tbb::enumerable_thread_specific<std::unique_ptr<Cells>> scratch([] { return std::make_unique<Cells>(); });
   tbb::parallel_for(size_t(0), count, [&](size_t i) {
-    const int row = int(i) / blocks.x;
-    const glm::ivec3 block(int(i) - row * blocks.x, row % blocks.y, row / blocks.y);
+    const glm::ivec3 block = block_coord(blocks, int(i));
     BlockCells cells(s, block, *scratch.local());
     const auto areas_of = [&](glm::ivec3 at) { return areas[size_t(block_index(s.blocks, at))].get(); };
     if (const BlockFaces* own = areas_of(block)) cells.add(own->areas);

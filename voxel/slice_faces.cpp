@@ -1,10 +1,8 @@
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <memory>
 
 #include "voxel/slice_area_list.h"
+#include "voxel/slice_blocks.h"
 
 namespace volgi::slicing {
 
@@ -24,14 +22,14 @@ struct MarkedFace {
   std::uint64_t high = kNoKey;
 };
 
-struct Scratch {
-  std::array<std::array<MarkedFace, kBlockCells>, 3> faces;
-  std::array<BlockMask, 3> active{};
-  AreaList::Scratch areas;
-};
-
 class BlockMarker {
  public:
+  struct Scratch {
+    std::array<std::array<MarkedFace, kBlockCells>, 3> faces;
+    std::array<BlockMask, 3> active{};
+    AreaList::Scratch areas;
+  };
+
   BlockMarker(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
       : s_(s), first_cell_(s.block_cell(block)), scratch_(scratch), areas_(first_cell_, scratch.areas) {
     const int triangle_bits = std::max(8, int(std::bit_width(s.triangles.size())));
@@ -194,16 +192,6 @@ std::unique_ptr<BlockFaces> BlockMarker::collect() {
 
 }  // namespace
 
-BlockTable mark_faces(const SlicedScene& s) {
-  BlockTable table(s.first.empty() ? 0 : s.first.size() - 1);
-  tbb::enumerable_thread_specific<std::unique_ptr<Scratch>> scratch([] { return std::make_unique<Scratch>(); });
-  tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
-    const std::uint32_t block = s.occupied[i];
-    BlockMarker marker(s, block, *scratch.local());
-    for (std::uint32_t k = s.first[block]; k < s.first[block + 1]; ++k) marker.add(s.binned[k]);
-    table[block] = marker.collect();
-  });
-  return table;
-}
+BlockTable mark_faces(const SlicedScene& s) { return for_all_blocks<BlockMarker>(s); }
 
 }  // namespace volgi::slicing

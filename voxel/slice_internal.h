@@ -80,10 +80,7 @@ struct SlicedScene {
 
   const Mesh& mesh(const SliceTriangle& t) const { return scene->meshes[t.mesh]; }
   const Material& material(const SliceTriangle& t) const { return scene->materials[size_t(mesh(t).material)]; }
-  glm::ivec3 block_cell(std::uint32_t block) const {
-    const int b = int(block), row = b / blocks.x;
-    return kLeafCells * glm::ivec3(b - row * blocks.x, row % blocks.y, row / blocks.y);
-  }
+  glm::ivec3 block_cell(std::uint32_t block) const { return kLeafCells * block_coord(blocks, int(block)); }
 };
 /// The scene and its mipmaps must outlive what is returned.
 SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);

@@ -172,10 +172,7 @@ class SideWriter {
 VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table) {
   const glm::ivec3 blocks = leaf_blocks(s.grid);
   const size_t count = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
-  const auto block_at = [&](size_t i) {
-    const int row = int(i) / blocks.x;
-    return glm::ivec3(int(i) - row * blocks.x, row % blocks.y, row / blocks.y);
-  };
+  const auto block_at = [&](size_t i) { return block_coord(blocks, int(i)); };
   std::vector<std::uint32_t> first(count + 1, 0);  // side of each block
   tbb::parallel_for(size_t(0), count, [&](size_t i) { first[i + 1] = side_count(cell_faces(s, table, block_at(i))); });
   std::partial_sum(first.begin(), first.end(), first.begin());

@@ -17,6 +17,10 @@ inline glm::ivec3 leaf_blocks(const Grid& grid) { return (grid.cells + (kLeafCel
 inline int block_index(glm::ivec3 blocks, glm::ivec3 block) {  // x fastest, as cells
   return block.x + blocks.x * (block.y + blocks.y * block.z);
 }
+inline glm::ivec3 block_coord(glm::ivec3 blocks, int index) {
+  const int row = index / blocks.x;
+  return {index - row * blocks.x, row % blocks.y, row / blocks.y};
+}
 inline int leaf_offset(glm::ivec3 cell) {
   return ((cell.x & (kLeafCells - 1)) << 6) | ((cell.y & (kLeafCells - 1)) << 3) | (cell.z & (kLeafCells - 1));
 }

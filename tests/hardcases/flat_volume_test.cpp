@@ -15,12 +15,7 @@ constexpr int kCells = 16;
 
 TEST(FlatVolume, IsExportedLikeAnyOther) {
   for (int axis = 0; axis < 3; ++axis) {
-    Scene scene;
-    glm::vec3 u(0.0f), v(0.0f);
-    u[(axis + 1) % 3] = 2.0f;
-    v[(axis + 2) % 3] = 2.0f;
-    add_quad(scene, add_material(scene, glm::vec3(0.8f)), -0.5f * (u + v), u, v);
-    scene.lights.push_back(point_light(glm::normalize(glm::cross(u, v)), glm::vec3(3.0f)));
+    const Scene scene = square_across(axis);
     for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {
       VolumeOptions options;
       options.grid_cells = kCells;

@@ -2,7 +2,6 @@
 // `conservative` scheme, and at 128 cells.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <tuple>
 
@@ -71,11 +70,8 @@ TEST_F(Leak, ThinWallConservative) {
   }
 }
 
-// A benchmark on the GPU of a machine that has none: minutes a picture. There it is the test thin_wall_128 that does it
-// (CMakeLists.txt), and this one nothing.
+// On the GPU's volume it is the test thin_wall_128 (CMakeLists.txt).
 TEST_F(Leak, ThinWallAt128Cells) {
-  const bool minutes = tested_backend() == screen::Backend::gpu && context().software();
-  if (minutes && std::getenv("VOLGI_TEST_SLOW") == nullptr) return;
   for (auto [shift, limit] : {std::pair(0.0f, 0.005), {0.25f, 0.02}, {0.5f, 0.02}}) {
     for (auto [gi, mode] : {std::pair(screen::GiMode::volume, "volume"), {screen::GiMode::hybrid, "hybrid"}}) {
       screen::FrameOptions o = options(128, shift);

@@ -70,11 +70,7 @@ class Judge {
 class Shape : public GlTest {
  protected:
   static screen::FrameOptions options(GiMode gi, int cells, Scheme scheme = Scheme::ordinates) {
-    screen::FrameOptions o;
-    o.gi = gi;
-    o.size = kSize;
-    o.light = screen::LightPart::indirect;
-    o.backend = tested_backend();
+    screen::FrameOptions o = picture_options(gi, kSize, screen::LightPart::indirect);
     o.volume.grid_cells = cells;
     o.volume.scheme.scheme = scheme;
     return o;
@@ -154,17 +150,6 @@ TEST_F(Shape, BoxesOfAHundredToOne) {
       EXPECT_NEAR(mean / first, 1.0, tolerance) << axis;
     }
   }
-}
-
-/// A square across `axis` with a lamp beside it: bounds without extent along that axis.
-Scene square_across(int axis) {
-  Scene scene;
-  glm::vec3 u(0.0f), v(0.0f);
-  u[(axis + 1) % 3] = 2.0f;
-  v[(axis + 2) % 3] = 2.0f;
-  add_quad(scene, add_material(scene, glm::vec3(0.8f)), -0.5f * (u + v), u, v);
-  scene.lights.push_back(point_light(glm::normalize(glm::cross(u, v)), glm::vec3(3.0f)));
-  return scene;
 }
 
 // A plane does not light itself. The lobes of `conservative` widen as they go, and 8 % of its light come back

@@ -22,6 +22,17 @@ inline screen::Backend tested_backend() {
   return name != nullptr && std::string_view(name) == "cpu" ? screen::Backend::cpu : screen::Backend::gpu;
 }
 
+/// Small pictures by the tested backend.
+inline screen::FrameOptions picture_options(screen::GiMode gi, glm::ivec2 size,
+                                            screen::LightPart light = screen::LightPart::full) {
+  screen::FrameOptions o;
+  o.gi = gi;
+  o.size = size;
+  o.light = light;
+  o.backend = tested_backend();
+  return o;
+}
+
 inline Rendered render(const gl::Context& context, const Scene& scene, const Camera& camera,
                        screen::FrameOptions options) {
   options.backend = tested_backend();

@@ -164,4 +164,15 @@ void for_closed_boxes(const Check& check) {
   }
 }
 
+/// A square of 2 m across `axis` with a lamp 1 m beside it: bounds without extent along that axis.
+inline Scene square_across(int axis) {
+  Scene scene;
+  glm::vec3 u(0.0f), v(0.0f);
+  u[(axis + 1) % 3] = 2.0f;
+  v[(axis + 2) % 3] = 2.0f;
+  add_quad(scene, add_material(scene, glm::vec3(0.8f)), -0.5f * (u + v), u, v);
+  scene.lights.push_back(point_light(glm::normalize(glm::cross(u, v)), glm::vec3(3.0f)));
+  return scene;
+}
+
 }  // namespace volgi::test
