@@ -276,6 +276,21 @@ TEST(CellVolumesCpu, MeansOfACellAndMaxima) {
   EXPECT_NEAR(cells.emission->tree().getValue(glassy)[0], 0.0f, 0.0f);
 }
 
+// What lies below a block's first face, but nearer to it than half a cell, is rasterized with the block above.
+TEST(CellVolumesCpu, WallsBelowABlockAreInItsNeighbour) {
+  const Grid grid = unit_grid(16);
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::vec3 centre(0.0f), normal(0.0f);
+    centre[axis] = -0.2f * grid.cell_size_m;  // 7.8 cells
+    normal[axis] = 1.0f;
+    Scene scene;
+    add_square(scene, add_material(scene, kRed), centre, normal, 2.0f);
+    const CellVolumes cells = cell_volumes_cpu(scene, grid);
+    EXPECT_EQ(cells.occupancy->activeVoxelCount(), 256u);
+    for (auto it = cells.occupancy->cbeginValueOn(); it; ++it) EXPECT_EQ(it.getCoord()[size_t(axis)], 7);
+  }
+}
+
 // Walls on the grid's rim belong to its outermost cells, also where these fill their last block.
 TEST(CellVolumesCpu, RimBelongsToTheGrid) {
   for (int n : {5, 8, 16}) {
