@@ -7,14 +7,13 @@
 #include <filesystem>
 
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
 namespace {
 
-Scene file(const char* name) {
-  return load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data" / (std::string(name) + ".glb"));
-}
+Scene file(const char* name) { return load_scene(source_dir() / "data" / (std::string(name) + ".glb")); }
 
 /// 3 : 1 : 2, turned walls inside, a blended sheet, a pole thinner than a cell and a lamp: grids that are not cubes.
 Scene long_room() {

@@ -8,12 +8,13 @@
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(VOLGI_SOURCE_DIR) / "data";
+const std::filesystem::path kData = source_dir() / "data";
 
 class Degenerate : public GlTest {
  protected:

@@ -14,6 +14,7 @@
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
@@ -26,9 +27,7 @@ using screen::LightPart;
 constexpr GiMode kModes[] = {GiMode::vpl, GiMode::negative};
 std::string name_of(GiMode mode) { return mode == GiMode::vpl ? "vpl" : "negative"; }
 
-Scene load(const std::string& name) {
-  return load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data" / (name + ".glb"));
-}
+Scene load(const std::string& name) { return load_scene(source_dir() / "data" / (name + ".glb")); }
 
 FrameOptions options(GiMode mode, int size = 96, int count = 256) {
   FrameOptions o;
@@ -131,8 +130,7 @@ TEST_F(FirstBounce, Scale) {
 TEST_F(FirstBounce, Offset) {
   for (const char* name : {"cornell", "emissive"}) {
     const Scene here = load(name);
-    const Scene there =
-        load_moved(std::filesystem::path(VOLGI_SOURCE_DIR) / "data" / (std::string(name) + ".glb"), 1e5);
+    const Scene there = load_moved(source_dir() / "data" / (std::string(name) + ".glb"), 1e5);
     for (const GiMode mode : kModes) {
       const double deviation = rmse_percent(picture(there, options(mode, 64)), picture(here, options(mode, 64)));
       record(std::string("offset_") + name + "_" + name_of(mode), deviation);

@@ -10,12 +10,13 @@
 #include "reference/picture_files.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kData = fs::path(VOLGI_SOURCE_DIR) / "data";
+const fs::path kData = source_dir() / "data";
 
 class Hybrid : public GlTest {
  protected:
@@ -64,7 +65,7 @@ TEST_F(Hybrid, AtriumAgainstPathTracing) {
   o.volume.grid_cells = 64;
   o.area_lights.count = 128;
   o.near_zone = 32.0f;
-  const Scene scene = load_scene(fs::path(VOLGI_BINARY_DIR) / "data/atrium.glb");
+  const Scene scene = load_scene(build_dir() / "data/atrium.glb");
   const auto atrium = error(render(context(), scene, scene.cameras.at(0), o).image, "references/atrium.exr");
   EXPECT_LT(atrium.rmse_pct_denoised.value(), on_cpu ? 20.0 : 23.0);
   // The GPU's sides see lights as far as their area lights' maps do: 0.91, 0.92 with maps of 128 x 128, which leak

@@ -10,6 +10,7 @@
 #include "core/visibility/embree_scene.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
@@ -106,12 +107,12 @@ TEST_F(InjectedFlux, TiltedPlaneUnderASpot) {
 }
 
 TEST_F(InjectedFlux, CornellAgainstShadowRays) {
-  const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/cornell.glb");
+  const Scene scene = load_scene(source_dir() / "data/cornell.glb");
   expect_flux(scene, traced_flux(scene, 40000.0));
 }
 
 TEST_F(InjectedFlux, RoomAgainstShadowRays) {
-  const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/room.glb");
+  const Scene scene = load_scene(source_dir() / "data/room.glb");
   expect_flux(scene, traced_flux(scene, 6000.0), true);
 }
 

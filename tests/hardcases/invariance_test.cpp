@@ -7,13 +7,14 @@
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kData = fs::path(VOLGI_SOURCE_DIR) / "data";
+const fs::path kData = source_dir() / "data";
 
 class Invariance : public GlTest {
  protected:

@@ -8,6 +8,7 @@
 #include "core/visibility/embree_scene.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
@@ -56,7 +57,7 @@ class Leak : public GlTest {
   }
 
  private:
-  const Scene scene_ = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/thin_wall.glb");
+  const Scene scene_ = load_scene(source_dir() / "data/thin_wall.glb");
   const Camera& camera_ = scene_.cameras.at(0);
   const EmbreeScene rays_{scene_};
 };

@@ -12,6 +12,7 @@
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
@@ -20,9 +21,7 @@ namespace {
 using screen::GiMode;
 using screen::LightPart;
 
-std::filesystem::path file(const std::string& name) {
-  return std::filesystem::path(VOLGI_SOURCE_DIR) / "data" / (name + ".glb");
-}
+std::filesystem::path file(const std::string& name) { return source_dir() / "data" / (name + ".glb"); }
 
 Scene turned(Scene scene, const glm::mat3& turn) {
   for (Mesh& mesh : scene.meshes) {

@@ -9,12 +9,13 @@
 #include "reference/metrics.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kData = fs::path(VOLGI_SOURCE_DIR) / "data";
+const fs::path kData = source_dir() / "data";
 
 Image difference(Image a, const Image& b) {
   for (size_t i = 0; i < a.pixels.size(); ++i) a.pixels[i] -= b.pixels[i];
@@ -132,7 +133,7 @@ TEST_F(Pictures, PassTimesSumToTheFrame) {
 }
 
 TEST_F(Pictures, AtriumRenders) {
-  const fs::path file = fs::path(VOLGI_BINARY_DIR) / "data/atrium.glb";
+  const fs::path file = build_dir() / "data/atrium.glb";
   ASSERT_TRUE(fs::exists(file)) << "build the target volgi_data";
   screen::FrameOptions options;
   options.size = {256, 256};

@@ -6,6 +6,7 @@
 
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
@@ -26,7 +27,7 @@ class Twin : public GlTest {
 };
 
 TEST_F(Twin, TotalPower) {
-  const std::filesystem::path data = std::filesystem::path(VOLGI_SOURCE_DIR) / "data";
+  const std::filesystem::path data = source_dir() / "data";
   for (const char* name : {"cornell", "room", "thin_wall", "emissive"}) {
     const Scene scene = load_scene(data / (std::string(name) + ".glb"));
     const screen::VolumeReport gpu = report(scene, screen::Backend::gpu);
@@ -45,7 +46,7 @@ TEST_F(Twin, TotalPower) {
 
 // The papers' schemes have pictures on both backends, and no direct light to show.
 TEST_F(Twin, PapersSchemes) {
-  const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/emissive.glb");
+  const Scene scene = load_scene(source_dir() / "data/emissive.glb");
   for (Scheme scheme : {Scheme::lpv2009, Scheme::gaitatzes2010}) {
     for (screen::LightPart light : {screen::LightPart::indirect, screen::LightPart::direct}) {
       double sums[2] = {};

@@ -12,6 +12,7 @@
 #include "core/visibility/virtual_lights_cpu.h"
 #include "propagation/volume_cpu.h"
 #include "tests/support/box_radiosity.h"
+#include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -178,7 +179,7 @@ double leaked(const Scene& scene, int cells, float shift, float wall_x) {
 
 // Walls thinner than a cell, of no thickness, and through cells' centres.
 TEST(SideGather, NothingPassesThinWalls) {
-  const Scene thin = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/thin_wall.glb");
+  const Scene thin = load_scene(source_dir() / "data/thin_wall.glb");
   const float beyond = float(0.0101 - thin.world_origin.x);
   for (int cells : {12, 16, 24, 32}) {
     for (float shift : {0.0f, 0.25f, 0.37f, 0.5f}) {
@@ -254,7 +255,7 @@ TEST(SideGather, ChosenLightsAreThoseThatMeetASurfaceAgain) {
 }
 
 TEST(SideGather, SameOnAnyNumberOfThreads) {
-  const Scene scene = load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data/thin_wall.glb");
+  const Scene scene = load_scene(source_dir() / "data/thin_wall.glb");
   const auto run = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const EmbreeScene embree(scene);

@@ -8,11 +8,12 @@
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
 #include "reference/picture_files.h"
+#include "tests/support/paths.h"
 
 namespace volgi {
 namespace {
 
-const std::string kData = VOLGI_SOURCE_DIR "/data/reference/";
+const std::string kData = (test::source_dir() / "data/reference").string() + "/";
 
 class Independent : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 

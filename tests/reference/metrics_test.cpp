@@ -14,11 +14,12 @@
 #include "core/error.h"
 #include "reference/error_map.h"
 #include "reference/picture_files.h"
+#include "tests/support/paths.h"
 
 namespace volgi {
 namespace {
 
-const std::string kData = VOLGI_SOURCE_DIR "/data/reference/ref/";
+const std::string kData = (test::source_dir() / "data/reference/ref").string() + "/";
 
 struct Pictures {
   ReferenceFile reference;
@@ -90,14 +91,16 @@ void expect_figures(std::istream& lines) {
 }
 
 TEST(Compare, AgreesWithStoredFiguresOfComparePy) {
-  std::ifstream file(VOLGI_SOURCE_DIR "/tests/reference/compare_figures.txt");
+  std::ifstream file(test::source_dir() / "tests/reference/compare_figures.txt");
   ASSERT_TRUE(file);
   expect_figures(file);
 }
 
 TEST(Compare, AgreesWithComparePyRunNow) {
-  std::FILE* python =
-      popen("/usr/bin/python3 '" VOLGI_SOURCE_DIR "/tests/reference/compare_figures.py' 2>/dev/null", "r");
+  std::FILE* python = popen(
+      ("/usr/bin/python3 '" + (test::source_dir() / "tests/reference/compare_figures.py").string() + "' 2>/dev/null")
+          .c_str(),
+      "r");
   ASSERT_NE(python, nullptr);
   std::string output(1 << 16, '\0');
   size_t size = 0;

@@ -8,6 +8,7 @@
 
 #include "reference/virtual_light_tracer.h"
 #include "scenes.h"
+#include "tests/support/paths.h"
 
 namespace volgi {
 namespace {
@@ -204,7 +205,7 @@ double share_stopped(const Scene& scene, const VirtualLightList& list) {
 
 // Every light is seen from everywhere, so no ray may be stopped: not by the light's own wall, nor by the pixel's.
 TEST(VirtualLights, ConvexBoxHasNoShadows) {
-  const Scene scene = load_scene(VOLGI_SOURCE_DIR "/data/convex_box.glb");
+  const Scene scene = load_scene(test::source_dir() / "data/convex_box.glb");
   const glm::vec3 edges = scene.bounds_max - scene.bounds_min;
   const float error = 1e-5f * std::max({edges.x, edges.y, edges.z});
   EXPECT_EQ(share_stopped(scene, lights_on(scene, 256, 0.0f, false)), 0.0);
@@ -226,7 +227,7 @@ TEST(VirtualLights, ConvexBoxHasNoShadows) {
 // The wall between the rooms is 2 cm thick. Lights close to its lit side must not be seen from the dark room, whichever
 // way they face.
 TEST(VirtualLights, ThinWallDoesNotLeak) {
-  const Scene scene = load_scene(VOLGI_SOURCE_DIR "/data/thin_wall.glb");
+  const Scene scene = load_scene(test::source_dir() / "data/thin_wall.glb");
   const VirtualLightTracer tracer(scene);
   const auto origin = glm::vec3(scene.world_origin);
   const auto dark_room = [&](const Image& image, const Image& position) {

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::app {
 namespace {
@@ -72,7 +73,7 @@ class Measuring : public test::GlTest {
 
   static std::vector<ReportScene> scenes() {
     std::vector<ReportScene> out;
-    out.push_back(open_report_scene("cornell", fs::path(VOLGI_SOURCE_DIR) / "data", glm::ivec2(32)));
+    out.push_back(open_report_scene("cornell", test::source_dir() / "data", glm::ivec2(32)));
     return out;
   }
 
@@ -171,7 +172,7 @@ TEST_F(Measuring, OptionsThatDoNotExistEndTheReport) {
 }
 
 TEST(ReportScene, ANameThatIsNeitherSceneNorFileIsRefused) {
-  EXPECT_THROW(open_report_scene("nowhere", fs::path(VOLGI_SOURCE_DIR) / "data", glm::ivec2(32)), Error);
+  EXPECT_THROW(open_report_scene("nowhere", test::source_dir() / "data", glm::ivec2(32)), Error);
 }
 
 }  // namespace

@@ -4,13 +4,12 @@
 #include <limits>
 
 #include "tests/screen/area_light_scene.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-
-std::filesystem::path source_dir() { return VOLGI_SOURCE_DIR; }
 
 float ray_distance(const EmbreeScene& embree, glm::vec3 origin, glm::vec3 direction) {
   RayHit hit;

@@ -5,11 +5,12 @@
 
 #include "tests/screen/screen_scene.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(VOLGI_SOURCE_DIR) / "data/reference";
+const std::filesystem::path folder = source_dir() / "data/reference";
 
 class ReferenceDirect : public GlTest, public ::testing::WithParamInterface<const char*> {};
 

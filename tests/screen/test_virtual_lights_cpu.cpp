@@ -5,6 +5,7 @@
 
 #include "tests/screen/virtual_light_scenes.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/paths.h"
 
 namespace volgi::test {
 namespace {
@@ -55,9 +56,7 @@ void expect_alike(const gl::Context& context, const Scene& scene) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.energy[c], 1.0, 0.01);
 }
 
-Scene file(const char* name) {
-  return load_scene(std::filesystem::path(VOLGI_SOURCE_DIR) / "data" / (std::string(name) + ".glb"));
-}
+Scene file(const char* name) { return load_scene(source_dir() / "data" / (std::string(name) + ".glb")); }
 
 TEST_F(VirtualLightTwins, Cornell) { expect_alike(context(), file("cornell")); }
 TEST_F(VirtualLightTwins, Room) { expect_alike(context(), file("room")); }
