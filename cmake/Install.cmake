@@ -8,10 +8,14 @@ get_property(rooms GLOBAL PROPERTY VOLGI_TARGETS)
 install(TARGETS volgi_options ${rooms} EXPORT volgiTargets)
 install(EXPORT volgiTargets NAMESPACE volgi:: DESTINATION ${VOLGI_PACKAGE_DIR})
 
-# A room's public headers are those directly in its folder.
-set(folders core core/visibility reference voxel propagation)
+# A room's public headers are those in its folder and its leaves.
+set(folders core core/gltf core/visibility reference voxel propagation propagation/lobes propagation/sweep)
 if(VOLGI_GL)
-  list(APPEND folders core/gl screen)
+  list(APPEND folders core/gl)
+  file(GLOB_RECURSE leaves CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} screen/*.h)
+  list(TRANSFORM leaves REPLACE "/[^/]*$" "")
+  list(REMOVE_DUPLICATES leaves)
+  list(APPEND folders ${leaves})
 endif()
 foreach(folder IN LISTS folders)
   file(GLOB headers CONFIGURE_DEPENDS ${folder}/*.h)

@@ -13,7 +13,7 @@
 #include <unordered_set>
 
 #include "core/error.h"
-#include "core/gltf_internal.h"
+#include "core/gltf/gltf_internal.h"
 
 namespace volgi {
 namespace {

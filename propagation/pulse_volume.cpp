@@ -5,8 +5,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "propagation/sh_lobes_radiance.h"
-#include "propagation/sh_lobes_wave.h"
+#include "propagation/lobes/sh_lobes_radiance.h"
+#include "propagation/lobes/sh_lobes_wave.h"
 #include "shaders/shared/sh_constants.shared.h"
 #include "voxel/cell_volumes.h"
 

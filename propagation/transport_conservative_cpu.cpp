@@ -4,8 +4,8 @@
 #include <array>
 #include <cassert>
 
-#include "propagation/sh_lobes_coarse.h"
-#include "propagation/sh_lobes_radiance.h"
+#include "propagation/lobes/sh_lobes_coarse.h"
+#include "propagation/lobes/sh_lobes_radiance.h"
 
 namespace volgi {
 

@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "propagation/sh_lobes.h"
-#include "propagation/sh_lobes_kernels.h"
-#include "propagation/sh_lobes_walls.h"
-#include "propagation/sh_lobes_wave.h"
+#include "propagation/lobes/sh_lobes.h"
+#include "propagation/lobes/sh_lobes_kernels.h"
+#include "propagation/lobes/sh_lobes_walls.h"
+#include "propagation/lobes/sh_lobes_wave.h"
 #include "propagation/transport.h"
 
 namespace volgi {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "propagation/ordinates.h"
-#include "propagation/sweep_kernel.h"
+#include "propagation/sweep/sweep_kernel.h"
 #include "propagation/transport.h"
 
 namespace volgi {

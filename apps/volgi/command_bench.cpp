@@ -5,22 +5,22 @@
 #include <cstdio>
 #include <memory>
 
-#include "apps/volgi/bench_against_path_tracing.h"
-#include "apps/volgi/bench_cochran2007.h"
-#include "apps/volgi/bench_conservative.h"
-#include "apps/volgi/bench_dong2009.h"
-#include "apps/volgi/bench_propagation.h"
-#include "apps/volgi/bench_voxelize.h"
+#include "apps/bench/against_path_tracing.h"
+#include "apps/bench/cochran2007.h"
+#include "apps/bench/conservative.h"
+#include "apps/bench/dong2009.h"
+#include "apps/bench/propagation.h"
+#include "apps/bench/repeated_frame.h"
+#include "apps/bench/voxelize.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/frame_stats.h"
-#include "apps/volgi/repeated_frame.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/log.h"
 #include "core/scene_source.h"
 #include "propagation/volume_cpu.h"
-#include "screen/frame.h"
+#include "screen/frame/frame.h"
 
 namespace volgi::app {
 

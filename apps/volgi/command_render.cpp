@@ -17,7 +17,7 @@
 #include "core/progress.h"
 #include "core/scene_source.h"
 #include "core/virtual_light_list.h"
-#include "screen/image_from_texture.h"
+#include "screen/base/image_from_texture.h"
 
 namespace volgi::app {
 

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/collect.h"
+#include "apps/report/export.h"
+#include "apps/report/page.h"
+#include "apps/report/summary.h"
+#include "apps/report/texts.h"
 #include "apps/volgi/commands.h"
-#include "apps/volgi/report/collect.h"
-#include "apps/volgi/report/export.h"
-#include "apps/volgi/report/page.h"
-#include "apps/volgi/report/summary.h"
-#include "apps/volgi/report/texts.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/volgi/volume_options.h"
-#include "screen/frame.h"
+#include "screen/frame/frame.h"
 
 namespace volgi::app {
 

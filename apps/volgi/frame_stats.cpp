@@ -47,9 +47,9 @@ std::string pass_table(const nlohmann::json& stats) {
   for (const auto& pass : stats["passes"]) {
     double ms = pass["gpu_ms"];
     sum += ms;
-    text += fmt::format("  {:<38} {:9.2f} ms\n", pass["name"].get<std::string>(), ms);
+    text += fmt::format("  {:<56} {:9.2f} ms\n", pass["name"].get<std::string>(), ms);
   }
-  text += fmt::format("  {:<38} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
+  text += fmt::format("  {:<56} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
                       stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum);
   if (stats["grid"][0] != 0) {
     text += fmt::format(

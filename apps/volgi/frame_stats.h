@@ -4,7 +4,7 @@
 
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
-#include "screen/frame.h"
+#include "screen/frame/frame.h"
 
 namespace volgi::app {
 

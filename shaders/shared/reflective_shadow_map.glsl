@@ -1,4 +1,4 @@
-// Reads reflective shadow maps as screen/reflective_shadow_map.cpp binds them: the data of all lights, the textures of
+// Reads reflective shadow maps as screen/base/reflective_shadow_map.cpp binds them: the data of all lights, the textures of
 // one. `light` must be the light whose textures are bound.
 #ifndef VOLGI_REFLECTIVE_SHADOW_MAP_GLSL
 #define VOLGI_REFLECTIVE_SHADOW_MAP_GLSL

@@ -9,9 +9,9 @@
 
 #include "core/metaballs.h"
 #include "core/scene_source.h"
-#include "tests/core/gltf_writer.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
+#include "tests/support/gltf_writer.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {

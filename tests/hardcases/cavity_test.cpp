@@ -10,8 +10,8 @@
 #include "propagation/side_irradiance_gl.h"
 #include "propagation/transport_conservative_gl.h"
 #include "propagation/transport_ordinates_gl.h"
-#include "screen/frame.h"
-#include "screen/inject_reflective_shadow_map.h"
+#include "screen/bounces/volume/inject_reflective_shadow_map.h"
+#include "screen/frame/frame.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/volume_scenes.h"
@@ -63,7 +63,7 @@ class Cavity : public GlTest {
             irradiance.indirect};
   }
 
-  /// The volume's part of a frame, as screen/volume_on_gpu.cpp runs it.
+  /// The volume's part of a frame, as screen/bounces/volume/volume_on_gpu.cpp runs it.
   static Solved solve_gpu(const Scene& scene, const Grid& grid, Scheme scheme, float largest_albedo) {
     gl::PassTimer timer(context().software(), false);
     const gl::SceneBuffers buffers(scene);

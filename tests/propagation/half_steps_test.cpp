@@ -9,8 +9,8 @@
 #include <memory>
 #include <random>
 
-#include "propagation/sh_lobes.h"
-#include "propagation/sh_lobes_kernels.h"
+#include "propagation/lobes/sh_lobes.h"
+#include "propagation/lobes/sh_lobes_kernels.h"
 
 namespace volgi::test {
 namespace {

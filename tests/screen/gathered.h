@@ -6,7 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
-#include "screen/virtual_light_gather.h"
+#include "screen/gather/strided/virtual_light_gather.h"
 #include "tests/screen/screen_scene.h"
 
 namespace volgi::test {

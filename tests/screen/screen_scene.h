@@ -8,10 +8,10 @@
 #include "core/gl/context.h"
 #include "core/image.h"
 #include "core/scene.h"
-#include "screen/direct.h"
-#include "screen/gbuffer.h"
-#include "screen/image_from_texture.h"
-#include "screen/reflective_shadow_map.h"
+#include "screen/base/direct.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/image_from_texture.h"
+#include "screen/base/reflective_shadow_map.h"
 
 namespace volgi::test {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "screen/virtual_lights.h"
+#include "screen/lights/rsm/virtual_lights.h"
 #include "tests/screen/screen_scene.h"
 
 namespace volgi::test {

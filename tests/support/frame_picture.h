@@ -6,8 +6,8 @@
 
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
-#include "screen/frame.h"
-#include "screen/image_from_texture.h"
+#include "screen/base/image_from_texture.h"
+#include "screen/frame/frame.h"
 
 namespace volgi::test {
 

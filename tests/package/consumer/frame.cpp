@@ -1,7 +1,7 @@
 #include <core/error.h>
 #include <core/gl/context.h>
-#include <screen/frame.h>
-#include <screen/image_from_texture.h>
+#include <screen/base/image_from_texture.h>
+#include <screen/frame/frame.h>
 
 #include <cstdio>
 

@@ -1,0 +1,114 @@
+#include "apps/report/renderers.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "apps/bench/timing.h"
+#include "apps/volgi/frame_options.h"
+#include "core/error.h"
+#include "core/gl/pass_timer.h"
+#include "core/log.h"
+#include "reference/path_integrator.h"
+#include "reference/path_tracer.h"
+#include "screen/base/image_from_texture.h"
+#include "screen/frame/frame.h"
+
+namespace volgi::app {
+namespace {
+
+void parse(CLI::App& command, const std::vector<std::string>& options) {
+  try {
+    command.parse(std::vector<std::string>(options.rbegin(), options.rend()));
+  } catch (const CLI::ParseError& error) {
+    throw Error(ExitCode::usage, error.what());
+  }
+}
+
+screen::FrameOptions frame_options(const std::vector<std::string>& options, const std::string& light, glm::ivec2 size) {
+  CLI::App command;
+  FrameCommandOptions asked;
+  asked.add_to(command);
+  parse(command, options);
+  asked.light = light;
+  return asked.frame_options(size);
+}
+
+Rendering render_frames(const RenderTask& task) {
+  screen::Frame frame(task.scene, frame_options(task.options, task.light, task.size));
+  gl::PassTimer timer(task.context.software(), true);
+  const int warm_up = warm_up_frames(task.frames);
+  for (int f = 0; f < warm_up + task.frames; ++f) {
+    if (f == warm_up) timer.reset();
+    timer.begin_frame();
+    frame.render(task.camera, timer);
+    timer.end_frame();
+  }
+  Rendering out;
+  out.picture = screen::image_from_texture(frame.radiance());
+  for (const auto& pass : timer.medians()) out.passes.push_back({{"name", pass.name}, {"ms", pass.gpu_ms}});
+  const auto time = timer.frame_time();
+  out.min_ms = time.min_ms;
+  out.median_ms = time.median_ms;
+  out.max_ms = time.max_ms;
+  out.timer = timer.kind() == gl::PassTimer::Kind::gpu ? "gpu" : "wall";
+  out.memory_bytes = frame.report().memory_bytes;
+  return out;
+}
+
+PathTracerOptions tracer_options(const std::vector<std::string>& options) {
+  CLI::App command;
+  PathTracerOptions tracer;
+  int bounces = -1;
+  command.add_option("--spp", tracer.samples_per_pixel);
+  command.add_option("--seed", tracer.seed);
+  command.add_option("--bounces", bounces);
+  parse(command, options);
+  if (bounces >= 0) tracer.max_bounces = bounces;
+  return tracer;
+}
+
+// The tracer's own progress bar would write over the report's.
+class Quiet {
+ public:
+  Quiet() : before_(is_quiet()) { set_quiet(true); }
+  ~Quiet() { set_quiet(before_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  bool before_;
+};
+
+Rendering trace_paths(const RenderTask& task) {
+  PathTracerOptions tracer = tracer_options(task.options);
+  tracer.size = task.size;
+  tracer.light = task.light == "indirect" ? PathTracerOptions::Light::indirect : PathTracerOptions::Light::full;
+  const Quiet quiet;
+  Rendering out;
+  std::vector<double> frames, builds;
+  if (task.frames > 1) path_trace(task.scene, task.camera, tracer);  // nothing but threads and caches to warm
+  for (int f = 0; f < task.frames; ++f) {
+    builds.push_back(time_ms([&] { const PathIntegrator built_alone(task.scene); }));
+    frames.push_back(time_ms([&] { out.picture = path_trace(task.scene, task.camera, tracer).color; }));
+  }
+  const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
+  out.min_ms = *least;
+  out.median_ms = median(frames);
+  out.max_ms = *most;
+  const double build_ms = std::min(median(builds), out.median_ms);
+  out.passes.push_back({{"name", "reference/build"}, {"ms", build_ms}});
+  out.passes.push_back({{"name", "reference/trace"}, {"ms", out.median_ms - build_ms}});
+  out.timer = "wall";
+  return out;
+}
+
+}  // namespace
+
+void check_options(const std::string& renderer, const std::vector<std::string>& options) {
+  if (renderer == "render") frame_options(options, "full", glm::ivec2(1));
+  if (renderer == "reference") tracer_options(options);
+}
+
+std::map<std::string, Renderer> standard_renderers() { return {{"render", render_frames}, {"reference", trace_paths}}; }
+
+}  // namespace volgi::app

@@ -1,0 +1,135 @@
+#include "apps/report/report_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "apps/report/machine.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "reference/path_tracer.h"
+
+namespace volgi::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+// Empty where there is no list: a scene is then a file.
+Json listed_scenes(const fs::path& data) {
+  std::ifstream file(data / "scenes.json");
+  if (!file) return Json::array();
+  Json list = Json::parse(file, nullptr, false);
+  if (!list.is_array()) throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": not a list of scenes");
+  return list;
+}
+
+// A listed file is relative to the data folder's parent; the build makes the large ones beside the program.
+std::optional<fs::path> file_of(const Json& entry, const fs::path& data) {
+  const fs::path listed = entry.at("file").get<std::string>();
+  const fs::path root = data.has_parent_path() ? data.parent_path() : fs::path();
+  const fs::path beside_program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "data";
+  for (const fs::path& path : {root / listed, data / listed.filename(),
+                               beside_program.lexically_proximate(fs::current_path()) / listed.filename()}) {
+    if (fs::is_regular_file(path)) return path;
+  }
+  return std::nullopt;
+}
+
+bool has_size(const fs::path& path, glm::ivec2 size) {
+  if (!fs::is_regular_file(path)) return false;
+  const Image picture = read_exr_rgb(path);
+  return picture.width == size.x && picture.height == size.y;
+}
+
+std::optional<ReportScene::Stored> stored_reference(const Json& entry, const fs::path& data, glm::ivec2 size) {
+  if (!entry.contains("reference") || !entry.contains("command")) return std::nullopt;
+  const fs::path path = data.parent_path() / entry.at("reference").get<std::string>();
+  if (!has_size(path, size)) return std::nullopt;
+  return ReportScene::Stored{path, entry.at("command").get<std::string>()};
+}
+
+std::string names_of(const Json& list) {
+  std::string names;
+  for (const Json& entry : list) names += (names.empty() ? "" : ", ") + entry.at("name").get<std::string>();
+  return names;
+}
+
+void take_listed(ReportScene& scene, const Json& entry, const fs::path& data, glm::ivec2 size) {
+  scene.all_bounces = stored_reference(entry, data, size);
+  if (entry.contains("one_bounce")) scene.one_bounce = stored_reference(entry["one_bounce"], data, size);
+}
+
+PathTracerOptions tracer_options(const std::vector<std::string>& options, glm::ivec2 size) {
+  PathTracerOptions tracer;
+  tracer.size = size;
+  for (size_t i = 0; i + 1 < options.size(); i += 2) {
+    if (options[i] != "--spp")
+      throw Error(ExitCode::bad_input, "references: '" + options[i] + "' is not --spp, the one option there is");
+    tracer.samples_per_pixel = std::max(1, std::atoi(options[i + 1].c_str()));
+  }
+  return tracer;
+}
+
+ReportScene::Stored computed_reference(const ReportScene& scene, glm::ivec2 size,
+                                       const std::vector<std::string>& options, const fs::path& folder) {
+  const PathTracerOptions tracer = tracer_options(options, size);
+  const std::string what = fmt::format("--size {}x{} --spp {}", size.x, size.y, tracer.samples_per_pixel);
+  const fs::path path =
+      folder / fmt::format("{}-{}-{}x{}-{}.exr", scene.name, scene.hash, size.x, size.y, tracer.samples_per_pixel);
+  if (!fs::is_regular_file(path)) {
+    fs::create_directories(folder);
+    write_exr(path, to_channels(path_trace(scene.scene, scene.camera, tracer)));
+  }
+  return {path, fmt::format("volgi reference {} -o {} {}", scene.path.string(), path.string(), what)};
+}
+
+}  // namespace
+
+ReportScene open_report_scene(const std::string& name_or_file, const fs::path& data, glm::ivec2 size) {
+  const Json list = listed_scenes(data);
+  ReportScene out;
+  const Json* listed = nullptr;
+  for (const Json& entry : list) {
+    if (entry.at("name") != name_or_file && entry.at("name") != fs::path(name_or_file).stem().string()) continue;
+    const std::optional<fs::path> path = file_of(entry, data);
+    if (fs::is_regular_file(name_or_file)) {
+      out.path = name_or_file;
+      if (path && scene_hash(*path) == scene_hash(out.path)) listed = &entry;
+    } else if (path) {
+      out.path = *path;
+      listed = &entry;
+    } else {
+      throw Error(ExitCode::bad_input, fmt::format("{}: {} is not there; the build makes it, or data/make_scenes.py",
+                                                   name_or_file, entry.at("file").get<std::string>()));
+    }
+  }
+  if (out.path.empty() && fs::is_regular_file(name_or_file)) out.path = name_or_file;
+  if (out.path.empty())
+    throw Error(ExitCode::bad_input, fmt::format("{}: neither a file nor one of the scenes in {}: {}", name_or_file,
+                                                 (data / "scenes.json").string(), names_of(list)));
+  out.name = out.path.stem().string();
+  out.hash = hex(scene_hash(out.path));
+  out.scene = load_scene(out.path);
+  if (out.scene.cameras.empty()) warn_once(out.path.string() + ": no camera; the whole scene is framed");
+  out.camera = out.scene.cameras.empty() ? framing_camera(out.scene.bounds_min, out.scene.bounds_max)
+                                         : out.scene.cameras.front();
+  if (listed != nullptr) take_listed(out, *listed, data, size);
+  return out;
+}
+
+ReportReference reference_of(ReportScene& scene, const std::string& light, bool one_bounce, glm::ivec2 size,
+                             const std::vector<std::string>& options, const fs::path& folder) {
+  if (!one_bounce && !scene.all_bounces) scene.all_bounces = computed_reference(scene, size, options, folder);
+  const ReportScene::Stored& from = one_bounce ? scene.one_bounce.value() : scene.all_bounces.value();
+  using Light = PathTracerOptions::Light;
+  ReportReference out{
+      from.path, from.command, read_reference(from.path, light == "full" ? Light::full : Light::indirect), {}};
+  out.mask = out.file.layers ? region_mask(Region::noedge, *out.file.layers) : Mask(out.file.color.pixels.size(), 1);
+  return out;
+}
+
+}  // namespace volgi::app

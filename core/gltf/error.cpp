@@ -1,0 +1,42 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/gltf/gltf_internal.h"
+#include "core/log.h"
+
+namespace volgi::gltf {
+namespace {
+
+/// A file's strings may hold line breaks, escape sequences or megabytes.
+std::string one_line(std::string_view text) {
+  constexpr size_t longest = 300;
+  std::string line(text.substr(0, longest));
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return std::uint8_t(c) < 32 || c == 127; }, ' ');
+  if (text.size() > longest) line += "...";
+  return line;
+}
+
+}  // namespace
+
+void refuse(const std::filesystem::path& file, std::string_view what) {
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", file.string(), one_line(what)));
+}
+
+void warn(const std::filesystem::path& file, std::string_view what) {
+  warn_once(fmt::format("{}: {}", file.string(), one_line(what)));
+}
+
+std::string element(std::string_view kind, size_t index, const std::string& name) {
+  if (name.empty()) return fmt::format("{} {}", kind, index);
+  return fmt::format("{} {} '{}'", kind, index, one_line(name.substr(0, 60)));
+}
+
+void check_index(const Document& document, int index, size_t size, const std::string& who, std::string_view kind) {
+  if (index >= 0 && size_t(index) < size) return;
+  refuse(document.path, fmt::format("{} refers to {} {}, but the file has {}", who, kind, index, size));
+}
+
+}  // namespace volgi::gltf

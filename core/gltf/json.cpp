@@ -1,0 +1,215 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+
+#include "core/gltf/gltf_internal.h"
+
+namespace volgi::gltf {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
+
+const std::set<std::string_view> supported_extensions = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                         "KHR_texture_transform", "KHR_mesh_quantization"};
+
+enum class Kind { index, index_or_object, indices, size, number, numbers, number_or_numbers, text, flag, object, list };
+
+const std::unordered_map<std::string_view, Kind>& property_kinds() {
+  static const std::unordered_map<std::string_view, Kind> kinds = [] {
+    std::unordered_map<std::string_view, Kind> k;
+    const auto add = [&k](Kind kind, std::initializer_list<std::string_view> names) {
+      for (const auto name : names) k.emplace(name, kind);
+    };
+    add(Kind::index, {"bufferView", "buffer",  "material",  "mesh",      "camera",       "skin",
+                      "source",     "sampler", "node",      "input",     "output",       "index",
+                      "texCoord",   "light",   "scene",     "mode",      "skeleton",     "inverseBindMatrices",
+                      "wrapS",      "wrapT",   "minFilter", "magFilter", "componentType"});
+    add(Kind::index_or_object, {"indices"});
+    add(Kind::indices, {"children", "joints", "attributes"});
+    add(Kind::size, {"count", "byteOffset", "byteLength", "byteStride"});
+    add(Kind::number, {"metallicFactor", "roughnessFactor", "alphaCutoff", "intensity", "range", "innerConeAngle",
+                       "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
+    add(Kind::numbers, {"translation", "matrix", "baseColorFactor", "emissiveFactor", "color", "offset"});
+    add(Kind::number_or_numbers, {"rotation", "scale"});
+    add(Kind::text, {"uri", "name", "mimeType", "alphaMode", "type", "interpolation", "path"});
+    add(Kind::flag, {"doubleSided", "normalized"});
+    add(Kind::object, {"pbrMetallicRoughness", "baseColorTexture", "metallicRoughnessTexture", "emissiveTexture",
+                       "sparse", "values", "spot", "perspective", "orthographic", "extensions"});
+    add(Kind::list, {"accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes",
+                     "nodes", "samplers", "scenes", "skins", "textures", "primitives", "channels", "lights"});
+    return k;
+  }();
+  return kinds;
+}
+
+bool is_whole(const Json& value, std::uint64_t largest) {
+  return value.is_number_unsigned() && value.get<std::uint64_t>() <= largest;
+}
+
+bool is_index(const Json& value) { return is_whole(value, std::uint64_t(std::numeric_limits<int>::max())); }
+
+template <typename Predicate>
+bool all_of(const Json& value, Predicate predicate) {
+  return std::all_of(value.begin(), value.end(), predicate);
+}
+
+bool is_numbers(const Json& value) {
+  return value.is_array() && all_of(value, [](const Json& v) { return v.is_number(); });
+}
+
+/// What the property must be; nothing when it is.
+const char* complaint(Kind kind, const Json& value) {
+  switch (kind) {
+    case Kind::index_or_object:
+      if (value.is_object()) return nullptr;
+      [[fallthrough]];
+    case Kind::index:
+      return is_index(value) ? nullptr : "a whole number from 0 to 2147483647";
+    case Kind::indices:
+      return value.is_structured() && all_of(value, is_index) ? nullptr : "made of whole numbers from 0 to 2147483647";
+    case Kind::size:
+      return is_whole(value, std::uint64_t(1) << 53) ? nullptr : "a whole number, zero or more";
+    case Kind::number:
+      return value.is_number() ? nullptr : "a number";
+    case Kind::numbers:
+      return is_numbers(value) ? nullptr : "a list of numbers";
+    case Kind::number_or_numbers:
+      return value.is_number() || is_numbers(value) ? nullptr : "a number or a list of numbers";
+    case Kind::text:
+      return value.is_string() ? nullptr : "a string";
+    case Kind::flag:
+      return value.is_boolean() ? nullptr : "true or false";
+    case Kind::object:
+      return value.is_object() ? nullptr : "an object";
+    case Kind::list: {
+      // "nodes" of a scene are indices, those of the file objects.
+      const bool good =
+          value.is_array() && (all_of(value, [](const Json& v) { return v.is_object(); }) || all_of(value, is_index));
+      return good ? nullptr : "a list of objects";
+    }
+  }
+  return nullptr;
+}
+
+class PropertyCheck {
+ public:
+  explicit PropertyCheck(const std::filesystem::path& file) : file_(file) {}
+
+  void walk(const Json& value) {
+    if (value.is_object()) {
+      for (const auto& [key, child] : value.items()) visit(key, child);
+    } else if (value.is_array()) {
+      for (size_t i = 0; i < value.size(); ++i) {
+        if (!value[i].is_structured()) continue;
+        trail_.push_back(fmt::format("[{}]", i));
+        walk(value[i]);
+        trail_.pop_back();
+      }
+    }
+  }
+
+ private:
+  void visit(const std::string& key, const Json& child) {
+    if (key == "extras") return;
+    trail_.push_back(trail_.empty() ? key : "." + key);
+    const auto kind = property_kinds().find(key);
+    const char* wrong = kind == property_kinds().end() ? nullptr : complaint(kind->second, child);
+    if (wrong != nullptr) refuse(file_, fmt::format("{} must be {}", fmt::join(trail_, ""), wrong));
+    if (key == "extensions") {
+      for (const auto& [name, extension] : child.items()) {
+        if (supported_extensions.contains(name)) visit(name, extension);
+      }
+    } else {
+      walk(child);
+    }
+    trail_.pop_back();
+  }
+
+  const std::filesystem::path& file_;
+  std::vector<std::string> trail_;
+};
+
+void check_nesting(const std::filesystem::path& file, std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > deepest_nesting) refuse(file, fmt::format("JSON nested deeper than {} levels", deepest_nesting));
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+}
+
+void check_asset(const std::filesystem::path& file, const Json& root) {
+  const auto asset = root.find("asset");
+  if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string()) {
+    refuse(file, "not a glTF file: asset.version is missing");
+  }
+  const auto version = (*asset)["version"].get<std::string>();
+  if (!version.starts_with("2.")) refuse(file, fmt::format("glTF version {} is not supported, only 2.0 is", version));
+}
+
+void check_extensions(const std::filesystem::path& file, const Json& root) {
+  for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
+    const auto names = root.find(list);
+    if (names == root.end()) continue;
+    if (!names->is_array()) refuse(file, fmt::format("{} must be a list of strings", list));
+    for (const Json& name : *names) {
+      if (!name.is_string()) refuse(file, fmt::format("{} must be a list of strings", list));
+      const auto text = name.get<std::string>();
+      if (supported_extensions.contains(text)) continue;
+      if (list == std::string_view("extensionsRequired")) {
+        refuse(file, fmt::format("requires the extension {}, which is not supported; export without it", text));
+      }
+      warn(file, fmt::format("the extension {} is ignored", text));
+    }
+  }
+}
+
+void add_externals(const std::filesystem::path& file, const Json& root, const char* list, ExternalFiles& out) {
+  const auto elements = root.find(list);
+  if (elements == root.end()) return;
+  for (size_t i = 0; i < elements->size(); ++i) {
+    const Json& holder = (*elements)[i];
+    if (!holder.is_object() || !holder.contains("uri")) continue;
+    const auto uri = holder["uri"].get<std::string>();
+    const std::string who = fmt::format("{}[{}]", list, i);
+    if (tinygltf::IsDataURI(uri)) continue;
+    if (uri.starts_with("data:")) refuse(file, fmt::format("{} has a data URI of an unsupported media type", who));
+    out.emplace(tinygltf_decoded(uri), resolve_uri(file, who, uri));
+  }
+}
+
+}  // namespace
+
+ExternalFiles check_json(const std::filesystem::path& file, std::string_view text) {
+  check_nesting(file, text);
+  Json root;
+  try {
+    root = Json::parse(text);
+  } catch (const Json::exception& e) {
+    refuse(file, fmt::format("not a glTF file: {}", e.what()));
+  }
+  if (!root.is_object()) refuse(file, "not a glTF file: the JSON is not an object");
+  check_asset(file, root);
+  check_extensions(file, root);
+  PropertyCheck(file).walk(root);
+  ExternalFiles files;
+  add_externals(file, root, "buffers", files);
+  add_externals(file, root, "images", files);
+  return files;
+}
+
+}  // namespace volgi::gltf

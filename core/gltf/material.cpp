@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/gltf/gltf_internal.h"
+
+namespace volgi::gltf {
+namespace {
+
+float in_range(const Document& document, double value, double smallest, double largest, const std::string& who,
+               std::string_view what) {
+  if (value >= smallest && value <= largest) return float(value);
+  refuse(document.path, fmt::format("{}: {} is {}, outside {} ... {}", who, what, value, smallest, largest));
+}
+
+glm::vec3 read_emission(const Document& document, const tinygltf::Material& in, const std::string& who) {
+  constexpr double largest_factor = 1e6;  // glTF says 1; older exporters put the strength here
+  constexpr double largest_strength = 1e12;
+  glm::vec3 factor(0.0f);
+  for (size_t c = 0; c < 3 && in.emissiveFactor.size() == 3; ++c) {
+    factor[int(c)] = in_range(document, in.emissiveFactor[c], 0.0, largest_factor, who, "emissiveFactor");
+  }
+  const auto extension = in.extensions.find("KHR_materials_emissive_strength");
+  if (extension == in.extensions.end() || !extension->second.Has("emissiveStrength")) return factor;
+  const double strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
+  return factor * in_range(document, strength, 0.0, largest_strength, who, "emissiveStrength");
+}
+
+AlphaMode read_alpha_mode(const Document& document, const std::string& mode, const std::string& who) {
+  if (mode == "OPAQUE" || mode.empty()) return AlphaMode::opaque;
+  if (mode == "MASK") return AlphaMode::mask;
+  if (mode == "BLEND") return AlphaMode::blend;
+  refuse(document.path, fmt::format("{} has the unknown alphaMode '{}'", who, mode));
+}
+
+Material read_material(const Document& document, size_t index, TextureTable& textures) {
+  const tinygltf::Material& in = document.model.materials[index];
+  const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
+  const std::string who = element("material", index, in.name);
+  Material material;
+  material.name = in.name;
+  for (size_t c = 0; c < 4 && pbr.baseColorFactor.size() == 4; ++c) {
+    material.base_color_factor[int(c)] = in_range(document, pbr.baseColorFactor[c], 0.0, 1.0, who, "baseColorFactor");
+  }
+  material.base_color = textures.use(pbr.baseColorTexture, who + " baseColorTexture");
+  material.metallic_factor = in_range(document, pbr.metallicFactor, 0.0, 1.0, who, "metallicFactor");
+  material.metallic = textures.use(pbr.metallicRoughnessTexture, who + " metallicRoughnessTexture");
+  material.emissive_radiance = read_emission(document, in, who);
+  material.emissive = textures.use(in.emissiveTexture, who + " emissiveTexture");
+  material.alpha_mode = read_alpha_mode(document, in.alphaMode, who);
+  material.alpha_cutoff = in_range(document, in.alphaCutoff, 0.0, 1e6, who, "alphaCutoff");
+  material.double_sided = in.doubleSided;
+  if (in.normalTexture.index >= 0) warn(document.path, "normal maps are ignored");
+  return material;
+}
+
+bool needs_default_material(const Document& document) {
+  for (const tinygltf::Mesh& mesh : document.model.meshes) {
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      if (primitive.material < 0) return true;
+    }
+  }
+  return false;
+}
+
+void warn_of_black_metals(const Document& document, const std::vector<Material>& materials) {
+  const auto is_black_metal = [](const Material& m) {
+    const bool colored = glm::vec3(m.base_color_factor) != glm::vec3(0.0f);
+    return m.metallic_factor >= 1.0f && m.metallic.texture < 0 && colored;
+  };
+  const auto metal = std::find_if(materials.begin(), materials.end(), is_black_metal);
+  if (metal == materials.end()) return;
+  const size_t index = size_t(metal - materials.begin());
+  const bool in_file = index < document.model.materials.size();
+  const std::string who = in_file ? element("material", index, metal->name) : "glTF's default material";
+  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default) and reflects nothing here: albedo "
+                                  "= baseColor x (1 - metallic)",
+                                  who));
+}
+
+}  // namespace
+
+Materials read_materials(const Document& document) {
+  Materials out;
+  TextureTable textures(document, out);
+  for (size_t i = 0; i < document.model.materials.size(); ++i) {
+    out.materials.push_back(read_material(document, i, textures));
+  }
+  if (needs_default_material(document)) out.materials.emplace_back().name = "default";
+  warn_of_black_metals(document, out.materials);
+  if (out.materials.empty()) out.materials.emplace_back().name = "default";
+  return out;
+}
+
+}  // namespace volgi::gltf

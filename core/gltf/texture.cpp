@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+#include <stb/stb_image.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "core/gltf/gltf_internal.h"
+
+namespace volgi::gltf {
+namespace {
+
+constexpr int largest_edge = 32768;
+constexpr std::int64_t most_pixels = std::int64_t(1) << 28;  // 1 GiB of RGBA
+
+/// glTF allows PNG and JPEG; stb's decoders of other formats are never let near a file.
+bool is_png_or_jpeg(Bytes bytes) {
+  const auto begins_with = [&](std::initializer_list<unsigned char> magic) {
+    return bytes.size >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.data);
+  };
+  return begins_with({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}) || begins_with({0xff, 0xd8, 0xff});
+}
+
+Wrap wrap_of(const Document& document, int mode, const std::string& who) {
+  switch (mode) {
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return Wrap::repeat;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return Wrap::mirrored_repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::clamp_to_edge;
+    default:
+      refuse(document.path, fmt::format("{} has the unknown wrap mode {}", who, mode));
+  }
+}
+
+Sampler read_sampler(const Document& document, int index, const std::string& who) {
+  Sampler sampler;
+  if (index < 0) return sampler;
+  check_index(document, index, document.model.samplers.size(), who, "sampler");
+  const tinygltf::Sampler& in = document.model.samplers[size_t(index)];
+  const std::string name = element("sampler", size_t(index), in.name);
+  sampler.wrap_s = wrap_of(document, in.wrapS, name);
+  sampler.wrap_t = wrap_of(document, in.wrapT, name);
+  sampler.magnify_nearest = in.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  const int minify = in.minFilter;
+  const bool known = minify == -1 || minify == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                     minify == TINYGLTF_TEXTURE_FILTER_LINEAR ||
+                     (minify >= TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST &&
+                      minify <= TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR);
+  if (!known) refuse(document.path, fmt::format("{} has the unknown minFilter {}", name, minify));
+  sampler.minify_nearest = minify == TINYGLTF_TEXTURE_FILTER_NEAREST ||
+                           minify == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+                           minify == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_LINEAR;
+  sampler.mipmap = minify != TINYGLTF_TEXTURE_FILTER_NEAREST && minify != TINYGLTF_TEXTURE_FILTER_LINEAR;
+  sampler.mipmap_nearest = minify == TINYGLTF_TEXTURE_FILTER_NEAREST_MIPMAP_NEAREST ||
+                           minify == TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_NEAREST;
+  return sampler;
+}
+
+glm::vec2 pair(const Document& document, const tinygltf::Value& value, glm::vec2 otherwise, const std::string& who) {
+  if (!value.IsArray()) return otherwise;
+  const glm::vec2 read = value.ArrayLen() == 2
+                             ? glm::vec2(value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble())
+                             : glm::vec2(std::numeric_limits<float>::infinity());
+  if (!std::isfinite(read.x) || !std::isfinite(read.y)) {
+    refuse(document.path, fmt::format("{}: KHR_texture_transform needs two numbers for offset and scale", who));
+  }
+  return read;
+}
+
+/// Applies KHR_texture_transform. Rotation by the extension's example (the lower left quadrant with offset (0,1),
+/// rotation 90 degrees, scale 0.5): u' = u cos + v sin, v' = -u sin + v cos.
+void apply_transform(const Document& document, const tinygltf::Value& transform, TextureUse& use,
+                     const std::string& who) {
+  const glm::vec2 offset = pair(document, transform.Get("offset"), glm::vec2(0.0f), who);
+  const glm::vec2 scale = pair(document, transform.Get("scale"), glm::vec2(1.0f), who);
+  const double angle_rad = transform.Has("rotation") ? transform.Get("rotation").GetNumberAsDouble() : 0.0;
+  const auto c = float(std::cos(angle_rad));
+  const auto s = float(std::sin(angle_rad));
+  use.uv_from_texcoord = glm::mat3(glm::vec3(c * scale.x, -s * scale.x, 0.0f),
+                                   glm::vec3(s * scale.y, c * scale.y, 0.0f), glm::vec3(offset, 1.0f));
+  if (transform.Has("texCoord")) use.texcoord = transform.Get("texCoord").GetNumberAsInt();
+}
+
+}  // namespace
+
+TextureImage decode_image(const Document& document, size_t index) {
+  const tinygltf::Image& in = document.model.images[index];
+  const std::string name = element("image", index, in.name.empty() ? in.uri : in.name);
+  const Bytes bytes =
+      in.bufferView >= 0 ? view_bytes(document, in.bufferView, name) : Bytes{in.image.data(), in.image.size()};
+  int width = 0, height = 0, channels = 0;
+  const bool known = is_png_or_jpeg(bytes) && bytes.size <= size_t(std::numeric_limits<int>::max()) &&
+                     stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels) != 0;
+  if (!known) refuse(document.path, fmt::format("{} is neither a PNG nor a JPEG that can be read", name));
+  if (width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
+      std::int64_t(width) * height > most_pixels) {
+    refuse(document.path, fmt::format("{} has {}x{} pixels, which is too large", name, width, height));
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
+      stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), stbi_image_free);
+  if (!pixels) refuse(document.path, fmt::format("{} cannot be decoded: {}", name, stbi_failure_reason()));
+  return {width, height, {pixels.get(), pixels.get() + size_t(width) * size_t(height) * 4}};
+}
+
+TextureTable::TextureTable(const Document& document, Materials& out)
+    : document_(document),
+      out_(out),
+      texture_of_file_(document.model.textures.size(), -1),
+      image_of_file_(document.model.images.size(), -1) {}
+
+int TextureTable::image(int file_image, const std::string& who) {
+  check_index(document_, file_image, document_.model.images.size(), who, "image");
+  int& known = image_of_file_[size_t(file_image)];
+  if (known < 0) {
+    out_.images.push_back(decode_image(document_, size_t(file_image)));
+    known = int(out_.images.size()) - 1;
+  }
+  return known;
+}
+
+int TextureTable::texture(int file_texture, const std::string& who) {
+  check_index(document_, file_texture, document_.model.textures.size(), who, "texture");
+  int& known = texture_of_file_[size_t(file_texture)];
+  if (known < 0) {
+    const tinygltf::Texture& in = document_.model.textures[size_t(file_texture)];
+    const std::string name = element("texture", size_t(file_texture), in.name);
+    const Sampler sampler = read_sampler(document_, in.sampler, name);
+    out_.textures.push_back({image(in.source, name), sampler});
+    known = int(out_.textures.size()) - 1;
+  }
+  return known;
+}
+
+TextureUse TextureTable::use(const tinygltf::TextureInfo& info, const std::string& who) {
+  TextureUse use;
+  if (info.index < 0) return use;
+  use.texture = texture(info.index, who);
+  use.texcoord = info.texCoord;
+  const auto transform = info.extensions.find("KHR_texture_transform");
+  if (transform != info.extensions.end() && transform->second.IsObject()) {
+    apply_transform(document_, transform->second, use, who);
+  }
+  if (use.texcoord < 0 || use.texcoord > 1) {
+    refuse(document_.path, fmt::format("{} uses TEXCOORD_{}; only 0 and 1 are supported", who, use.texcoord));
+  }
+  return use;
+}
+
+}  // namespace volgi::gltf

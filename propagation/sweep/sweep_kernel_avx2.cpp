@@ -1,0 +1,8 @@
+#define VOLGI_SWEEP_WIDE 0
+#include "propagation/sweep/sweep_kernel_body.h"
+
+namespace volgi::sweep {
+
+Kernels avx2() { return {"avx2", kernel}; }
+
+}  // namespace volgi::sweep

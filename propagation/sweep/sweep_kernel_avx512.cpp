@@ -1,0 +1,8 @@
+#define VOLGI_SWEEP_WIDE 1
+#include "propagation/sweep/sweep_kernel_body.h"
+
+namespace volgi::sweep {
+
+Kernels avx512() { return {"avx512", kernel}; }
+
+}  // namespace volgi::sweep

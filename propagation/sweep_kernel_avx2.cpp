@@ -1,8 +1,0 @@
-#define VOLGI_SWEEP_WIDE 0
-#include "propagation/sweep_kernel_body.h"
-
-namespace volgi::sweep {
-
-Kernels avx2() { return {"avx2", kernel}; }
-
-}  // namespace volgi::sweep

@@ -1,8 +1,0 @@
-#define VOLGI_SWEEP_WIDE 1
-#include "propagation/sweep_kernel_body.h"
-
-namespace volgi::sweep {
-
-Kernels avx512() { return {"avx512", kernel}; }
-
-}  // namespace volgi::sweep

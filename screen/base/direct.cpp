@@ -1,0 +1,33 @@
+#include "screen/base/direct.h"
+
+#include <array>
+
+#include "core/gl/raster_state.h"
+
+namespace volgi::screen {
+
+Direct::Direct(glm::ivec2 size)
+    : radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
+      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl")) {
+  const std::array colors{gl::Framebuffer::Attachment{&radiance_}};
+  framebuffer_ = gl::Framebuffer(colors, {}, size);
+}
+
+void Direct::run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  gl::begin_fullscreen_pass(/*add=*/true);
+  framebuffer_.bind();
+  constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
+  glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, zero.data());
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  gbuffer.albedo().bind(2);
+  program_.use();
+  for (int light = 0; light < maps.light_count(); ++light) {
+    maps.bind(light);
+    program_.set("light", light);
+    gl::draw_fullscreen_triangle();
+  }
+}
+
+}  // namespace volgi::screen

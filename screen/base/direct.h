@@ -1,0 +1,26 @@
+#pragma once
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/reflective_shadow_map.h"
+
+namespace volgi::screen {
+
+/// Pass "screen/base/direct": light of the punctual lights after one reflection at the visible surface, with shadows.
+/// No cosine below either the shading normal's or the geometric normal's horizon. Cost: one fullscreen pass per light.
+class Direct {
+ public:
+  static constexpr const char* name = "screen/base/direct";
+  explicit Direct(glm::ivec2 size);
+  void run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+
+  const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
+
+ private:
+  gl::Texture radiance_;
+  gl::Framebuffer framebuffer_;
+  gl::Program program_;
+};
+
+}  // namespace volgi::screen

@@ -1,0 +1,83 @@
+#include "screen/base/reflective_shadow_map.h"
+
+#include <cassert>
+
+#include "core/gl/raster_state.h"
+#include "core/light.h"
+
+namespace volgi::screen {
+
+ReflectiveShadowMap::ReflectiveShadowMap(Resolution resolution)
+    : resolution_(resolution), program_(gl::Program::raster(name)) {}
+
+ReflectiveShadowMap::Map ReflectiveShadowMap::make_map(int resolution, int layer_count) {
+  Map map;
+  map.depth = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution, resolution, layer_count);
+  map.normal = gl::Texture::make_2d_array(GL_RG16_SNORM, resolution, resolution, layer_count);
+  map.albedo = gl::Texture::make_2d_array(GL_RGBA16, resolution, resolution, layer_count);
+  for (int layer = 0; layer < layer_count; ++layer) {
+    using Attachment = gl::Framebuffer::Attachment;
+    const std::array colors{Attachment{&map.normal, layer}, Attachment{&map.albedo, layer}};
+    map.framebuffers.emplace_back(colors, Attachment{&map.depth, layer}, glm::ivec2(resolution));
+  }
+  return map;
+}
+
+void ReflectiveShadowMap::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  lights_.clear();
+  layers_.clear();
+  maps_.resize(scene.lights.size());
+  for (size_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    int resolution = light.type == Light::Type::directional ? resolution_.sun : resolution_.spot;
+    auto layers = reflective_shadow_layers(light, resolution, scene.bounds_min, scene.bounds_max);
+    if (layers.size() > 1) {
+      resolution = resolution_.cube_face;
+      layers = reflective_shadow_layers(light, resolution, scene.bounds_min, scene.bounds_max);
+    }
+    lights_.push_back({to_shared(light), int(layers_.size()), int(layers.size()), resolution, 0});
+    layers_.insert(layers_.end(), layers.begin(), layers.end());
+    const glm::ivec3 size(resolution, resolution, int(layers.size()));
+    if (maps_[i].framebuffers.empty() || maps_[i].depth.size() != size) maps_[i] = make_map(size.x, size.z);
+  }
+  light_buffer_ = gl::Buffer(lights_);
+  layer_buffer_ = gl::Buffer(layers_);
+
+  gl::begin_geometry_pass();
+  for (int light = 0; light < light_count(); ++light) {
+    for (int layer = 0; layer < layer_count(light); ++layer) draw_layer(buffers, maps_[size_t(light)], light, layer);
+  }
+}
+
+void ReflectiveShadowMap::draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer) {
+  const shared::ReflectiveShadowLayer& view = layers_[size_t(lights_[size_t(light)].first_layer) + size_t(layer)];
+  const gl::Framebuffer& target = map.framebuffers[size_t(layer)];
+  target.bind();
+  constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
+  for (GLint i = 0; i < 2; ++i) glClearNamedFramebufferfv(target.id(), GL_COLOR, i, zero.data());
+  glClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, zero.data());
+  program_.set("clip_from_world", view.clip_from_world);
+  program_.set("viewer", view.directional != 0 ? glm::vec4(-view.forward, 0.0f) : glm::vec4(view.origin, 1.0f));
+  buffers.draw(program_);
+}
+
+void ReflectiveShadowMap::bind(int light) const {
+  assert(light >= 0 && light < light_count());
+  const Map& map = maps_[size_t(light)];
+  light_buffer_.bind_storage(1);
+  layer_buffer_.bind_storage(2);
+  map.depth.bind(12);
+  map.normal.bind(13);
+  map.albedo.bind(14);
+}
+
+size_t ReflectiveShadowMap::bytes() const {
+  size_t sum = light_buffer_.bytes() + layer_buffer_.bytes();
+  for (const shared::ReflectiveShadowLight& l : lights_) {
+    sum += size_t(l.layer_count) * size_t(l.resolution) * size_t(l.resolution) * 16;
+  }
+  return sum;
+}
+
+}  // namespace volgi::screen

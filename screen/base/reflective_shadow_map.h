@@ -1,0 +1,65 @@
+#pragma once
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "core/gl/scene_buffers.h"
+#include "core/light_layers.h"
+#include "core/scene.h"
+#include "shaders/shared/reflective_shadow_map.shared.h"
+
+namespace volgi::screen {
+
+/// Pass "screen/base/reflective_shadow_map": what every punctual light sees. Read it in shaders through
+/// shared/reflective_shadow_map.glsl after bind().
+/// Cost: one draw of the scene per layer (1 for a sun or a spot, 6 for a point light or a spot wider than 60 degrees
+/// from its axis); 16 bytes of GPU memory a texel.
+class ReflectiveShadowMap {
+ public:
+  static constexpr const char* name = "screen/base/reflective_shadow_map";
+  struct Resolution {  // texels on each side of a layer, more than 2 RSM_MARGIN_TEXELS
+    int spot = 1024;
+    int cube_face = 512;
+    int sun = 2048;
+  };
+  explicit ReflectiveShadowMap(Resolution resolution);
+  ReflectiveShadowMap() : ReflectiveShadowMap(Resolution()) {}
+
+  /// Draws the maps of all of `scene.lights` (`buffers` must hold the triangles of `scene`). Textures are kept between
+  /// frames while the lights keep their kinds.
+  void run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer);
+
+  int light_count() const { return int(lights_.size()); }
+  int layer_count(int light) const { return lights_[size_t(light)].layer_count; }
+  int resolution(int light) const { return lights_[size_t(light)].resolution; }
+  /// Storage bindings 1 and 2 for the data of all lights, texture units 12 to 14 for the textures of `light`.
+  void bind(int light) const;
+  size_t bytes() const;  // GPU memory
+
+  const gl::Texture& depth(int light) const { return maps_[size_t(light)].depth; }    // D32F, 0 in the background
+  const gl::Texture& normal(int light) const { return maps_[size_t(light)].normal; }  // RG16_SNORM, octahedral
+  const gl::Texture& albedo(int light) const { return maps_[size_t(light)].albedo; }  // RGBA16
+  const std::vector<shared::ReflectiveShadowLight>& lights() const { return lights_; }
+  const std::vector<shared::ReflectiveShadowLayer>& layers() const { return layers_; }
+
+ private:
+  struct Map {
+    gl::Texture depth, normal, albedo;
+    std::vector<gl::Framebuffer> framebuffers;  // one per layer
+  };
+  static Map make_map(int resolution, int layer_count);
+  void draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer);
+
+  Resolution resolution_;
+  std::vector<shared::ReflectiveShadowLight> lights_;
+  std::vector<shared::ReflectiveShadowLayer> layers_;
+  std::vector<Map> maps_;
+  gl::Buffer light_buffer_, layer_buffer_;
+  gl::Program program_;
+};
+
+}  // namespace volgi::screen

@@ -1,0 +1,51 @@
+#pragma once
+#include <memory>
+
+#include "core/gl/pass_timer.h"
+#include "core/gl/scene_buffers.h"
+#include "propagation/volume_options.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/reflective_shadow_map.h"
+#include "screen/bounces/volume/side_gather_gl.h"
+
+namespace volgi::screen {
+
+/// What the volume did, for --stats.
+struct VolumeReport {
+  bool on_gpu = false;
+  glm::ivec3 grid{0};
+  size_t sides = 0;
+  BounceReport bounces;
+  glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
+  glm::vec3 lost{0.0f};      // and what found no side, or looks out of the grid at its rim [W]
+  size_t memory_bytes = 0;
+};
+
+/// The volume subsystem's part of a frame, wherever it runs: light in, propagation, its light on every pixel.
+class FrameVolume {
+ public:
+  virtual ~FrameVolume() = default;
+  /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce on the GPU starts from, else null; one
+  /// on
+  ///   the CPU finds its own.
+  virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+                   const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
+  /// The scene has changed in place, its materials, textures and images apart: the next run meets it as a new volume
+  /// would. @return false if this volume cannot follow, as when the bounds make another grid: make a new one then.
+  virtual bool follow_scene() { return false; }
+  virtual const gl::Texture& direct() const = 0;    // RGBA32F: first arrival of emission, reflected to the viewer
+  virtual const gl::Texture& indirect() const = 0;  // RGBA32F [W m^-2 sr^-1]
+  /// Waits for the GPU; after a frame, not in one.
+  virtual VolumeReport report() const = 0;
+};
+
+/// Memory that a volume is going to take [bytes], from the grid and the scene's area, before anything is allocated:
+/// what options.memory_limit is held against.
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu);
+
+/// @param scene  must outlive the volume.
+/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit.
+std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
+std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
+
+}  // namespace volgi::screen

@@ -1,0 +1,36 @@
+#include "screen/bounces/volume/radiance_gather.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "core/gl/raster_state.h"
+
+namespace volgi::screen {
+
+RadianceGather::RadianceGather(glm::ivec2 size, int sh_order)
+    : direct_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
+      indirect_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
+      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/bounces/volume/radiance_gather.frag.glsl",
+                                   {fmt::format("ORDER {}", sh_order)})) {
+  std::array<gl::Framebuffer::Attachment, 2> colors{{{&direct_}, {&indirect_}}};
+  framebuffer_ = gl::Framebuffer(colors, {}, size);
+}
+
+void RadianceGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, const RadianceVolumeGl& radiance,
+                         const gl::Texture* normal_occupancy, gl::PassTimer& timer) {
+  auto scope = timer.scope(name);
+  gl::begin_fullscreen_pass();
+  framebuffer_.bind();
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  gbuffer.albedo().bind(2);
+  radiance.sh.bind(3);
+  if (normal_occupancy != nullptr) normal_occupancy->bind(4);
+  voxels.bind();
+  program_.use();
+  program_.set("occupied_only", int(normal_occupancy != nullptr));
+  gl::draw_fullscreen_triangle();
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,28 @@
+#include "screen/bounces/volume/side_gather_gl.h"
+
+#include <algorithm>
+
+namespace volgi::screen {
+
+SideGatherGl::SideGatherGl(const AreaLightShadow& shadow)
+    : program_(gl::Program::compute("screen/bounces/volume/side_gather.comp.glsl", {shadow.define()})) {}
+
+void SideGatherGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounce, const SideFluxGl& flux,
+                       gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  const VirtualLightListGl& lights = first_bounce.lights;
+  voxels.bind();
+  first_bounce.area_lights.buffer().bind_uniform(1);
+  lights.buffer.bind_storage(0);
+  first_bounce.area_lights.order().bind_storage(1);
+  first_bounce.area_lights.cluster_of().bind_storage(2);
+  flux.emitted().bind_storage(6);
+  flux.punctual().bind_storage(7);
+  first_bounce.shadow.bind(first_bounce.maps, program_);
+  program_.set("light_count", lights.count());
+  program_.use();
+  gl::dispatch({int(std::max(voxels.side_capacity, 1u)), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+}  // namespace volgi::screen

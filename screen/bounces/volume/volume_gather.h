@@ -1,0 +1,31 @@
+#pragma once
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "screen/base/gbuffer.h"
+#include "voxel/voxel_grid_gl.h"
+
+namespace volgi::screen {
+
+/// Pass "screen/bounces/volume/volume_gather": the volume's light on every pixel, albedo/pi times the irradiance of the
+/// sides of the cells in front of its surface: trilinear, like normals, never from behind a surface
+/// (docs/theory.md#reconstruction). Cost: eight cells and their sides a pixel.
+class VolumeGather {
+ public:
+  static constexpr const char* name = "screen/bounces/volume/volume_gather";
+  explicit VolumeGather(glm::ivec2 size);
+  /// @param direct_irradiance, indirect_irradiance  per side, vec4 [W m^-2]
+  void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const gl::Buffer& direct_irradiance,
+           const gl::Buffer& indirect_irradiance, gl::PassTimer& timer);
+
+  const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
+  const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
+  size_t bytes() const { return size_t(direct_.size().x) * size_t(direct_.size().y) * 32; }
+
+ private:
+  gl::Texture direct_, indirect_;
+  gl::Framebuffer framebuffer_;
+  gl::Program program_;
+};
+
+}  // namespace volgi::screen

@@ -1,0 +1,182 @@
+#include "core/surface.h"
+#include "propagation/bounces_gl.h"
+#include "propagation/pulse_volume_gl.h"
+#include "propagation/side_irradiance_gl.h"
+#include "propagation/transport_conservative_gl.h"
+#include "propagation/transport_ordinates_gl.h"
+#include "propagation/volume_cpu.h"
+#include "screen/bounces/volume/frame_volume.h"
+#include "screen/bounces/volume/inject_reflective_shadow_map.h"
+#include "screen/bounces/volume/radiance_gather.h"
+#include "screen/bounces/volume/volume_gather.h"
+#include "voxel/cell_volumes_gl.h"
+#include "voxel/emitter_pieces.h"
+#include "voxel/sliced_voxelization.h"
+
+namespace volgi::screen {
+
+namespace {
+
+std::unique_ptr<TransportGl> make_transport_gl(const Grid& grid, const SchemeOptions& options) {
+  if (options.scheme == Scheme::conservative) return std::make_unique<ConservativeTransportGl>(grid, options.sh_order);
+  return std::make_unique<OrdinatesTransportGl>(grid, options);
+}
+
+/// Voxels and light in, for every scheme.
+class LitVoxels {
+ public:
+  LitVoxels(const Scene& scene, const VolumeOptions& options)
+      : scene_(scene),
+        options_(options),
+        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
+        emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
+
+  /// @param emission_apart  SideFluxGl::inject_emitters.
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, bool emission_apart,
+           gl::PassTimer& timer) {
+    voxelization_.run(buffers, timer);
+    flux_.begin(voxels());
+    flux_.inject_emitters(voxels(), emitters_, timer, emission_apart);
+    inject_.run(voxels(), maps, scene_, flux_, timer);
+  }
+  /// The first bounce in, instead of light.
+  void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
+    voxelization_.run(buffers, timer);
+    flux_.begin(voxels());
+    if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.shadow);
+    side_gather_->run(voxels(), first_bounce, flux_, timer);
+  }
+  /// @return false where the scene's bounds make another grid.
+  bool follow_scene() {
+    if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells), voxels().grid)) return false;
+    voxelization_.count_again();
+    emitters_ = emitter_pieces(scene_, voxels().grid);
+    return true;
+  }
+  const VoxelGridGl& voxels() const { return voxelization_.voxels(); }
+  const SideFluxGl& flux() const { return flux_; }
+  bool emits() const { return !emitters_.empty(); }
+  size_t bytes() const { return voxelization_.bytes() + flux_.bytes(); }
+
+  VolumeReport report(const BounceReport& bounces) const {
+    VolumeReport r;
+    r.on_gpu = true;
+    r.grid = voxels().grid.cells;
+    r.sides = voxels().side_count.download<std::uint32_t>(1)[0];
+    r.bounces = bounces;
+    r.lost = flux_.lost();
+    for (const gl::Buffer* flux : {&flux_.emitted(), &flux_.punctual()}) {
+      for (glm::vec4 f : flux->download<glm::vec4>(r.sides)) r.injected += glm::vec3(f);
+    }
+    return r;
+  }
+
+ private:
+  const Scene& scene_;
+  VolumeOptions options_;
+  SlicedVoxelization voxelization_;
+  SideFluxGl flux_;
+  InjectReflectiveShadowMap inject_;
+  std::vector<FluxSample> emitters_;
+  std::unique_ptr<SideGatherGl> side_gather_;
+};
+
+/// Schemes that carry light from sides to sides.
+class SidesOnGpu : public FrameVolume {
+ public:
+  SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+      : scene_(scene),
+        options_(options),
+        rules_(bounce_rules(options, largest_albedo(scene))),
+        lit_(scene, options),
+        bounces_(make_transport_gl(lit_.voxels().grid, options.scheme)),
+        gather_(size) {}
+
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+           const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
+    if (first_bounce != nullptr) {
+      lit_.run(buffers, *first_bounce, timer);
+    } else {
+      lit_.run(buffers, maps, true, timer);
+    }
+    bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits(), rules_, timer);
+    irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
+    gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), timer);
+  }
+  bool follow_scene() override {
+    rules_ = bounce_rules(options_, largest_albedo(scene_));
+    return lit_.follow_scene();
+  }
+  const gl::Texture& direct() const override { return gather_.direct(); }
+  const gl::Texture& indirect() const override { return gather_.indirect(); }
+  VolumeReport report() const override {
+    VolumeReport r = lit_.report(bounce_report_);
+    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + gather_.bytes();
+    return r;
+  }
+
+ private:
+  const Scene& scene_;
+  VolumeOptions options_;
+  BounceRules rules_;
+  LitVoxels lit_;
+  BouncesGl bounces_;
+  SideIrradianceGl irradiance_;
+  VolumeGather gather_;
+  BounceReport bounce_report_;
+};
+
+/// The papers' schemes: a pulse through cells, read from spherical harmonics.
+class PulseOnGpu : public FrameVolume {
+ public:
+  PulseOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
+      : options_(options),
+        lit_(scene, options),
+        cells_(lit_.voxels().grid),
+        pulse_(lit_.voxels().grid, options.scheme),
+        gather_(size, options.scheme.sh_order) {
+    bounce_rules(options, 0.0f);  // says what these schemes cannot do
+  }
+
+  void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
+           const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
+    lit_.run(buffers, maps, false, timer);
+    cells_.run(buffers, timer);
+    bounce_report_ = pulse_.run(lit_.voxels(), cells_.normal_occupancy(), cells_.albedo(), lit_.flux().punctual(),
+                                options_.iterations.value_or(VolumeOptions::kPulseIterations), timer);
+    const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
+    gather_.run(gbuffer, lit_.voxels(), pulse_.radiance(), occupied_only ? &cells_.normal_occupancy() : nullptr, timer);
+  }
+  bool follow_scene() override { return lit_.follow_scene(); }
+  const gl::Texture& direct() const override { return gather_.direct(); }
+  const gl::Texture& indirect() const override { return gather_.indirect(); }
+  VolumeReport report() const override {
+    VolumeReport r = lit_.report(bounce_report_);
+    r.memory_bytes = lit_.bytes() + cells_.bytes() + pulse_.bytes() + gather_.bytes();
+    return r;
+  }
+
+ private:
+  VolumeOptions options_;
+  LitVoxels lit_;
+  CellVolumesGl cells_;
+  PulseVolumeGl pulse_;
+  RadianceGather gather_;
+  BounceReport bounce_report_;
+};
+
+}  // namespace
+
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu) {
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const size_t of_twin = bytes_expected_cpu(scene, grid, options.scheme);
+  return on_gpu ? of_twin + voxelization_bytes(grid, scene) : of_twin;
+}
+
+std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  refuse_above_limit(options, volume_bytes_expected(scene, options, true), "GPU");
+  if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnGpu>(scene, options, size);
+  return std::make_unique<PulseOnGpu>(scene, options, size);
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,208 @@
+#include "screen/gather/interleaved/area_light_gather.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace volgi::screen {
+
+namespace {
+
+constexpr size_t kLightBytes = sizeof(shared::VirtualLight);
+constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_A_BLOCK * kLightBytes;
+constexpr int kAlign = 16;           // lights: 768 bytes, a multiple of every offset alignment that GL allows
+constexpr size_t kDoubtBins = 2048;  // exact_pixels.glsl
+constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
+
+gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
+
+/// Place of a subset in the block of n x n pixels: subsets that follow on one another lie far apart, as the numbers of
+/// a matrix for ordered dithering do.
+glm::ivec2 place_in_block(int subset, int n) {
+  glm::ivec2 place(0);
+  for (int step = n / 2; step >= 1; step /= 2, subset /= 4) {
+    place.x += ((subset ^ (subset >> 1)) & 1) * step;
+    place.y += (subset & 1) * step;
+  }
+  return place;
+}
+
+void check(const AreaLightGatherOptions& options) {
+  const int n = options.interleave;
+  if (n != 1 && n != 2 && n != 4 && n != 8)
+    throw Error(ExitCode::usage, "interleaving of the area lights' gather: 1, 2, 4 or 8, not " + std::to_string(n));
+  if (!(options.exact_rows >= 0.0f && std::isfinite(options.exact_rows)))
+    throw Error(ExitCode::usage, "rows of pixels that are gathered again must be 0 or more");
+}
+
+void wait_for_pictures() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT); }
+
+}  // namespace
+
+AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& options, const AreaLightShadow& shadow)
+    : options_(options), size_(size) {
+  check(options);
+  direct_ = picture(size);
+  indirect_ = picture(size);
+  direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
+  arrange_ = gl::Program::compute("screen/gather/interleaved/arrange_lights.comp.glsl");
+  gather_ = gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define()});
+  if (options_.interleave == 1) return;
+  direct_irradiance_ = picture(size);
+  indirect_irradiance_ = picture(size);
+  half_blurred_ = picture(size);
+  doubt_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
+  bins_ = gl::Buffer((1 + kDoubtBins) * sizeof(GLuint));
+  list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
+  gather_listed_ =
+      gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define(), "LISTED"});
+  blur_ = gl::Program::compute("screen/gather/interleaved/geometry_blur.comp.glsl");
+  count_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_count.comp.glsl");
+  threshold_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_threshold.comp.glsl");
+  list_program_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_list.comp.glsl");
+}
+
+void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
+                          const VirtualAreaLights& area_lights, const ParaboloidDepthMaps& maps,
+                          const AreaLightShadow& shadow, float scene_diagonal_m, gl::PassTimer& timer) {
+  with_direct_ = lights.emitted > 0;
+  {
+    const auto scope = timer.scope(arrange_name);
+    arrange(lights, area_lights);
+  }
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  gbuffer.albedo().bind(2);
+  area_lights.buffer().bind_uniform(1);
+  const auto set_up = [&](const gl::Program& program) {
+    program.set("near_zone", options_.near_zone);
+    program.set("area_light_count", area_lights.count());
+    program.set("with_direct", with_direct_ ? 1 : 0);
+    shadow.bind(maps, program);
+  };
+  {
+    const auto scope = timer.scope(name);
+    set_up(gather_);
+    gather_interleaved();
+  }
+  if (options_.interleave == 1) return;
+  {
+    const auto scope = timer.scope(blur_name);
+    blur(indirect_irradiance_, indirect_, false, scene_diagonal_m);
+    if (with_direct_) blur(direct_irradiance_, direct_, true, scene_diagonal_m);
+  }
+  if (options_.exact_rows > 0.0f) {
+    const auto scope = timer.scope(exact_name);
+    list_doubtful();
+    set_up(gather_listed_);
+    gather_listed();
+  }
+}
+
+void AreaLightGather::arrange(const VirtualLightListGl& lights, const VirtualAreaLights& area_lights) {
+  light_count_ = lights.count();
+  gl::reserve(arranged_, size_t(light_count_ + VIRTUAL_LIGHTS_A_BLOCK) * kLightBytes);  // blocks are bound whole
+  lights.buffer.bind_storage(0);
+  area_lights.order().bind_storage(1);
+  area_lights.cluster_of().bind_storage(2);
+  arranged_.bind_storage(3);
+  arrange_.set("light_count", light_count_);
+  arrange_.use();
+  gl::dispatch({std::max(light_count_, 1), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_UNIFORM_BARRIER_BIT);
+}
+
+/// Dispatches `program` for each block of the lights; the first begins the sum, the last ends it. At least one
+/// dispatch, which leaves black where there are no lights.
+template <class Dispatch>
+void AreaLightGather::gather(const gl::Program& program, Range lights, const Dispatch& dispatch) {
+  int first = lights.first;
+  do {
+    const int block = first / kAlign * kAlign;
+    const int end = std::min(block + VIRTUAL_LIGHTS_A_BLOCK, lights.end);
+    glBindBufferRange(GL_UNIFORM_BUFFER, 0, arranged_.id(), GLintptr(block) * GLintptr(kLightBytes), kBlockBytes);
+    program.set("first_of_block", block);
+    program.set("first_light", first);
+    program.set("end_light", end);
+    program.set("begins", first == lights.first ? 1 : 0);
+    program.set("ends", end == lights.end ? 1 : 0);
+    dispatch();
+    if (end < lights.end) wait_for_pictures();
+    first = end;
+  } while (first < lights.end);
+}
+
+void AreaLightGather::gather_interleaved() {
+  const int n = options_.interleave;
+  (n > 1 ? indirect_irradiance_ : indirect_).bind_image(0, GL_READ_WRITE);
+  (n > 1 ? direct_irradiance_ : direct_).bind_image(1, GL_READ_WRITE);
+  gather_.set("interleave", n);
+  gather_.use();
+  const auto first_of = [&](int subset) { return int(int64_t(subset) * light_count_ / (n * n)); };
+  for (int subset = 0; subset < n * n; ++subset) {
+    gather_.set("offset", place_in_block(subset, n));
+    gather(gather_, {first_of(subset), first_of(subset + 1)}, [&] {
+      gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {8, 8, 1});
+    });
+  }
+  wait_for_pictures();
+}
+
+void AreaLightGather::gather_listed() {
+  indirect_.bind_image(0, GL_READ_WRITE);
+  direct_.bind_image(1, GL_READ_WRITE);
+  list_.bind_storage(0);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list_.id());
+  gather_listed_.set("interleave", 1);
+  gather_listed_.use();
+  gather(gather_listed_, {0, light_count_}, [] { glDispatchComputeIndirect(0); });
+  wait_for_pictures();
+}
+
+void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m) {
+  doubt_.bind_image(1, GL_READ_WRITE);
+  blur_.set("interleave", options_.interleave);
+  blur_.set("most_distance_m", options_.blur_distance * scene_diagonal_m);
+  blur_.set("least_cosine", options_.blur_cosine);
+  blur_.set("off_plane", options_.blur_off_plane);
+  blur_.set("adds", adds ? 1 : 0);
+  blur_.use();
+  const auto along = [&](glm::ivec2 axis, const gl::Texture& source, const gl::Texture& target, bool ends) {
+    source.bind(3);
+    target.bind_image(0, GL_WRITE_ONLY);
+    blur_.set("axis", axis);
+    blur_.set("ends", ends ? 1 : 0);
+    gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
+    wait_for_pictures();
+  };
+  along({1, 0}, from, half_blurred_, false);
+  along({0, 1}, half_blurred_, to, true);
+}
+
+void AreaLightGather::list_doubtful() {
+  constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
+  list_.upload(nothing.data(), sizeof nothing);
+  bins_.clear();
+  doubt_.bind_image(0, GL_READ_ONLY);
+  list_.bind_storage(0);
+  bins_.bind_storage(1);
+  count_.use();
+  gl::dispatch({size_.x, size_.y, 1}, {64, 64, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  threshold_.set("most", GLuint(std::min(options_.exact_rows, float(size_.y)) * float(size_.x)));
+  threshold_.use();
+  gl::dispatch({1, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  list_program_.use();
+  gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+}
+
+size_t AreaLightGather::bytes() const {
+  const size_t texel_bytes = options_.interleave > 1 ? 5 * 16 + 4 : 2 * 16;
+  return texel_bytes * size_t(size_.x) * size_t(size_.y) + arranged_.bytes() + bins_.bytes() + list_.bytes();
+}
+
+}  // namespace volgi::screen

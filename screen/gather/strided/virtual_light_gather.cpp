@@ -1,0 +1,131 @@
+#include "screen/gather/strided/virtual_light_gather.h"
+
+#include <algorithm>
+#include <array>
+
+namespace volgi::screen {
+
+namespace {
+
+constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_A_BLOCK * sizeof(shared::VirtualLight);
+constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
+
+gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
+
+glm::ivec2 coarse_size(glm::ivec2 size, int stride) { return (size - 1 + stride - 1) / stride + 1; }
+
+/// One-dimensional, beyond the 65535 groups of 64 threads that GL promises: thread_index() of coarse_pixels.glsl.
+void dispatch_threads(size_t count) {
+  constexpr size_t kGroupsARow = 32768;
+  const size_t groups = (count + 63) / 64;
+  glDispatchCompute(GLuint(std::min(groups, kGroupsARow)), GLuint((groups + kGroupsARow - 1) / kGroupsARow), 1);
+}
+
+void bind_pixels(const GBuffer& gbuffer) {
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  gbuffer.albedo().bind(2);
+}
+
+}  // namespace
+
+VirtualLightGather::VirtualLightGather(glm::ivec2 size, const GatherOptions& options)
+    : options_(options),
+      size_(size),
+      direct_(picture(size)),
+      indirect_(picture(size)),
+      gather_grid_(gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl")) {
+  direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
+  if (options_.stride == 1) return;
+  coarse_direct_ = picture(coarse_size(size, options_.stride));
+  coarse_indirect_ = picture(coarse_size(size, options_.stride));
+  list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
+  gather_list_ = gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl", {"LISTED"});
+  discontinuity_ = gl::Program::compute("screen/gather/strided/discontinuity.comp.glsl");
+}
+
+void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative,
+                             Part part, float scene_diagonal_m, gl::PassTimer& timer) {
+  const int reflected = part == Part::all ? lights.reflected : 0;
+  const bool with_direct = lights.emitted > 0;
+  const auto gather_all = [&](Points points, const gl::Texture& indirect, const gl::Texture& direct) {
+    const auto scope = timer.scope(name);
+    bind_pixels(gbuffer);
+    gather(points, lights, 0, reflected, negative, indirect);
+    if (with_direct) gather(points, lights, lights.reflected, lights.count(), nullptr, direct);
+  };
+  if (options_.stride == 1) {
+    gather_all(Points::grid, indirect_, direct_);
+  } else {
+    gather_all(Points::grid, coarse_indirect_, coarse_direct_);
+    {
+      const auto scope = timer.scope(discontinuity_name);
+      find_discontinuities(gbuffer, with_direct, scene_diagonal_m);
+    }
+    gather_all(Points::list, indirect_, direct_);
+  }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+}
+
+void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights, int first, int end,
+                                const NegativeLights* negative, const gl::Texture& target) {
+  const bool listed = points == Points::list;
+  const gl::Program& program = listed ? gather_list_ : gather_grid_;
+  program.use();
+  program.set("stride", listed ? 1 : options_.stride);
+  target.bind_image(0, GL_READ_WRITE);
+  if (listed) list_.bind_storage(0);
+  if (negative != nullptr) negative->buffer().bind_uniform(1);
+  // At least one dispatch, which leaves black where there are no lights.
+  const int first_block = first / VIRTUAL_LIGHTS_A_BLOCK;
+  const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_A_BLOCK, first_block);
+  for (int block = first_block; block <= last_block; ++block) {
+    const int start = block * VIRTUAL_LIGHTS_A_BLOCK;
+    glBindBufferRange(GL_UNIFORM_BUFFER, 0, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
+    program.set("first_light", std::max(first - start, 0));
+    program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_A_BLOCK));
+    program.set("begins", block == first_block ? 1 : 0);
+    program.set("ends", block == last_block ? 1 : 0);
+    program.set("negative_count", negative != nullptr ? negative->count() : 0);
+    if (listed) {
+      glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list_.id());
+      glDispatchComputeIndirect(0);
+    } else {
+      dispatch_threads(size_t(target.size().x) * size_t(target.size().y));
+    }
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  }
+}
+
+void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m) {
+  constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
+  list_.upload(nothing.data(), sizeof nothing);
+  discontinuity_.use();
+  discontinuity_.set("stride", options_.stride);
+  discontinuity_.set("threshold", options_.threshold_rad);
+  discontinuity_.set("contrast", options_.contrast);
+  discontinuity_.set("unlike_distance_m", options_.distance * scene_diagonal_m);
+  discontinuity_.set("with_direct", with_direct ? 1 : 0);
+  bind_pixels(gbuffer);
+  coarse_indirect_.bind(3);
+  coarse_direct_.bind(4);
+  indirect_.bind_image(0, GL_WRITE_ONLY);
+  direct_.bind_image(1, GL_WRITE_ONLY);
+  list_.bind_storage(0);
+  gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {8, 8, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+}
+
+float VirtualLightGather::coarse_share() const {
+  if (options_.stride == 1) return 0.0f;
+  const GLuint listed = list_.download<GLuint>(1, 3 * sizeof(GLuint)).front();
+  return 1.0f - float(listed) / float(size_.x * size_.y);
+}
+
+size_t VirtualLightGather::bytes() const {
+  size_t texels = 2 * size_t(size_.x) * size_t(size_.y);
+  if (options_.stride > 1) texels += 2 * size_t(coarse_indirect_.size().x) * size_t(coarse_indirect_.size().y);
+  return 16 * texels + list_.bytes();
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,55 @@
+#pragma once
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/virtual_light_list_gl.h"
+#include "screen/visibility/negative/negative_lights.h"
+
+namespace volgi::screen {
+
+/// Which pixels are gathered (Cochran and Steele 2007, §3.5).
+struct GatherOptions {
+  int stride = 2;  // every stride-th pixel in both directions first, the others only where they differ; 1: all
+  /// A pixel differs when its normal, or the way to a coarse pixel off its tangent plane, turns by more than this.
+  float threshold_rad = 0.2f;
+  float contrast = 0.15f;  // or when coarse irradiances around it do by more than this part of the largest
+  float distance = 0.05f;  // or when it is farther than this part of the scene's diagonal away from them
+};
+
+/// Passes "screen/gather/strided/virtual_light_gather" and "screen/gather/strided/discontinuity": the light of all
+/// virtual lights on every pixel, less what negative lights take away, never below zero. Nothing is read back: pixels
+/// to gather again are listed and dispatched by the GPU. Cost: lights times pixels gathered.
+class VirtualLightGather {
+ public:
+  static constexpr const char* name = "screen/gather/strided/virtual_light_gather";
+  static constexpr const char* discontinuity_name = "screen/gather/strided/discontinuity";
+  VirtualLightGather(glm::ivec2 size, const GatherOptions& options);
+
+  enum class Part { emitted, all };
+  /// @param negative  taken from the reflected lights' irradiance; may be null.
+  /// @param part  emitted: direct() only.
+  /// @param scene_diagonal_m  what options.distance is part of.
+  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative, Part part,
+           float scene_diagonal_m, gl::PassTimer& timer);
+
+  const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
+  const gl::Texture& indirect() const { return indirect_; }  // RGBA32F: the first reflection of punctual light
+  /// Share of the pixels that was not gathered again at full resolution; 0 with stride 1. Waits for the GPU.
+  float coarse_share() const;
+  size_t bytes() const;
+
+ private:
+  enum class Points { grid, list };
+  void gather(Points points, const VirtualLightListGl& lights, int first, int end, const NegativeLights* negative,
+              const gl::Texture& target);
+  void find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m);
+
+  GatherOptions options_;
+  glm::ivec2 size_;
+  gl::Texture direct_, indirect_, coarse_direct_, coarse_indirect_;
+  gl::Buffer list_;  // WorkListHead of shaders/screen/base/work_list.glsl, then pixels
+  gl::Program gather_grid_, gather_list_, discontinuity_;
+};
+
+}  // namespace volgi::screen

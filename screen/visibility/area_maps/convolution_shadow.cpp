@@ -1,0 +1,63 @@
+#include "screen/visibility/area_maps/convolution_shadow.h"
+
+#include <bit>
+#include <cassert>
+
+namespace volgi::screen {
+namespace {
+
+gl::Texture mipmapped(GLenum format, int resolution, int layers) {
+  gl::Texture t =
+      gl::Texture::make_2d_array(format, resolution, resolution, layers, std::bit_width(unsigned(resolution)));
+  t.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
+  return t;
+}
+
+}  // namespace
+
+ConvolutionShadow::ConvolutionShadow(int resolution, int layers, BasisFormat format)
+    : format_(format),
+      basis_(mipmapped(format == BasisFormat::rgba8 ? GL_RGBA8 : GL_RGBA16, resolution, 2 * layers)),
+      basis_depth_(mipmapped(GL_RGBA16, resolution, 2 * layers)),
+      depth_(mipmapped(GL_R32F, resolution, layers)),
+      farthest_(gl::Texture::make_2d(GL_R32F, layers, 1)),
+      range_program_(gl::Program::compute("screen/visibility/area_maps/convolution_shadow_range.comp.glsl")),
+      basis_program_(
+          gl::Program::compute("screen/visibility/area_maps/convolution_shadow.comp.glsl",
+                               {format == BasisFormat::rgba8 ? "BASIS_FORMAT rgba8" : "BASIS_FORMAT rgba16"})) {}
+
+void ConvolutionShadow::run(const ParaboloidDepthMaps& maps, gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  const int resolution = maps.resolution();
+  const int layers = maps.layers();
+  assert(depth_.size() == glm::ivec3(resolution, resolution, layers));
+  maps.distance().bind(0);
+  farthest_.bind_image(0, GL_WRITE_ONLY);
+  range_program_.use();
+  glDispatchCompute(GLuint(layers), 1, 1);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  farthest_.bind(1);
+  basis_.bind_image(0, GL_WRITE_ONLY);
+  basis_depth_.bind_image(1, GL_WRITE_ONLY);
+  depth_.bind_image(2, GL_WRITE_ONLY);
+  basis_program_.use();
+  gl::dispatch({resolution, resolution, layers}, {8, 8, 1});
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
+  for (const gl::Texture* t : {&basis_, &basis_depth_, &depth_}) glGenerateTextureMipmap(t->id());
+}
+
+void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program&) const {
+  basis_.bind(8);
+  basis_depth_.bind(9);
+  depth_.bind(10);
+  farthest_.bind(11);
+}
+
+size_t ConvolutionShadow::bytes() const {
+  const glm::ivec3 size = depth_.size();
+  const size_t texels = size_t(size.x) * size_t(size.y) * size_t(size.z);
+  const size_t texel_bytes = (format_ == BasisFormat::rgba8 ? 8 : 16) + 16 + 4;
+  return texels * texel_bytes * 4 / 3;
+}
+
+}  // namespace volgi::screen

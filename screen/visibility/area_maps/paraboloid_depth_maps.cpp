@@ -1,0 +1,79 @@
+#include "screen/visibility/area_maps/paraboloid_depth_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <limits>
+
+namespace volgi::screen {
+namespace {
+
+// Tiles that do not fit are drawn where they are found: slower, never wrong.
+constexpr GLuint kTileCapacity = 1u << 19;
+constexpr size_t kHeadBytes = 2 * sizeof(GLuint);
+constexpr size_t kTileBytes = 2 * sizeof(GLuint);
+constexpr GLuint kTileGroups = 1024;              // share out the tiles; enough to fill a GPU
+constexpr GLsizei kTrianglesADispatch = 1 << 21;  // GL promises 65535 groups, of 64 triangles
+
+}  // namespace
+
+ParaboloidDepthMaps::ParaboloidDepthMaps(int resolution, int layers)
+    : resolution_(resolution),
+      layers_(layers),
+      distance_(gl::Texture::make_2d_array(GL_R32F, resolution, resolution, layers)),
+      tiles_(kHeadBytes + kTileCapacity * kTileBytes) {
+  assert(resolution >= 1 && resolution <= 4096 && layers <= VIRTUAL_AREA_LIGHTS_MOST);
+  const auto programs = [](const std::vector<std::string>& defines) {
+    return Programs{gl::Program::compute("screen/visibility/area_maps/paraboloid_depth_maps.comp.glsl", defines),
+                    gl::Program::compute("screen/visibility/area_maps/paraboloid_depth_maps_tiles.comp.glsl", defines)};
+  };
+  opaque_ = programs({});
+  alpha_ = programs({"ALPHA"});
+}
+
+void ParaboloidDepthMaps::run(const gl::SceneBuffers& scene, const VirtualAreaLights& lights, gl::PassTimer& timer) {
+  run(scene, lights.buffer(), lights.count(), timer);
+}
+
+void ParaboloidDepthMaps::run(const gl::SceneBuffers& scene, const gl::Buffer& area_lights, int count,
+                              gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  constexpr float nothing = std::numeric_limits<float>::infinity();
+  distance_.clear({nothing, nothing, nothing, nothing});
+  area_lights.bind_storage(1);
+  tiles_.bind_storage(2);
+  glBindImageTexture(0, distance_.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);  // atomic operations want integers
+  for (const Programs* programs : {&opaque_, &alpha_}) {
+    programs->triangles.set("resolution", resolution_);
+    programs->tiles.set("resolution", resolution_);
+  }
+  // Both programs of alpha read the material.
+  const auto visit = [&](const gl::SceneBuffers::Triangles& triangles) {
+    draw(triangles.opaque ? opaque_ : alpha_, triangles, std::min(count, layers_));
+  };
+  scene.visit_triangles(0, {&alpha_.triangles, &alpha_.tiles}, visit);
+  glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
+}
+
+void ParaboloidDepthMaps::draw(const Programs& programs, const gl::SceneBuffers::Triangles& triangles,
+                               int layers) const {
+  for (GLsizei done = 0; done < triangles.count; done += kTrianglesADispatch) {
+    const GLsizei count = std::min(triangles.count - done, kTrianglesADispatch);
+    constexpr std::array<GLuint, 2> head{0, kTileCapacity};
+    tiles_.upload(head.data(), sizeof head);
+    programs.triangles.set("first_triangle", triangles.first + done);
+    programs.triangles.set("triangle_count", count);
+    programs.triangles.use();
+    gl::dispatch({count, layers, 1}, {64, 1, 1});
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    programs.tiles.use();
+    glDispatchCompute(kTileGroups, 1, 1);
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
+}
+
+size_t ParaboloidDepthMaps::bytes() const {
+  return size_t(resolution_) * size_t(resolution_) * size_t(layers_) * sizeof(float) + tiles_.bytes();
+}
+
+}  // namespace volgi::screen

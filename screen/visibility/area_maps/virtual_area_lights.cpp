@@ -1,0 +1,116 @@
+#include "screen/visibility/area_maps/virtual_area_lights.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <string>
+
+#include "core/error.h"
+
+namespace volgi::screen {
+namespace {
+
+constexpr GLuint kLightsBinding = 0, kClusterOfBinding = 1, kCentersBinding = 2, kProgressBinding = 3;
+constexpr GLuint kAreaLightsBinding = 4, kOrderBinding = 5;
+constexpr GLuint kCentersBlock = 0;  // the same buffer for reading only: llvmpipe reads uniform blocks faster
+constexpr int kListStep = 64;        // whole work groups of virtual_area_lights_assign.comp.glsl
+constexpr size_t kCenterBytes = 2 * sizeof(glm::vec4);
+
+const VirtualAreaLightOptions& checked(const VirtualAreaLightOptions& options) {
+  if (options.count < 1 || options.count > VIRTUAL_AREA_LIGHTS_MOST) {
+    throw Error(ExitCode::usage, std::to_string(options.count) + " area lights: the number must lie between 1 and " +
+                                     std::to_string(VIRTUAL_AREA_LIGHTS_MOST));
+  }
+  for (const float weight : {options.position_weight, options.normal_weight}) {
+    if (std::isfinite(weight) && weight >= 0.0f) continue;
+    throw Error(ExitCode::usage, "weight " + std::to_string(weight) + " of area lights: must be finite and at least 0");
+  }
+  return options;
+}
+
+void wait_for_writes() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT); }
+
+}  // namespace
+
+VirtualAreaLights::VirtualAreaLights(const VirtualAreaLightOptions& options)
+    : options_(checked(options)),
+      area_lights_(VIRTUAL_AREA_LIGHTS_MOST * sizeof(shared::VirtualAreaLight)),
+      centers_(VIRTUAL_AREA_LIGHTS_MOST * kCenterBytes),
+      progress_((1 + kMostIterations) * sizeof(GLuint)),
+      seed_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_seed.comp.glsl")),
+      assign_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_assign.comp.glsl")),
+      update_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_update.comp.glsl")),
+      list_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_list.comp.glsl")),
+      shape_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_shape.comp.glsl")) {
+  area_lights_.clear();
+  seed_.set("cluster_count", options_.count);
+  seed_.set("most_iterations", kMostIterations);
+  assign_.set("weight_per_rad", options_.normal_weight / glm::pi<float>());
+  list_.set("cluster_count", options_.count);
+}
+
+void VirtualAreaLights::run(const VirtualLights& lights, float scene_diagonal_m, gl::PassTimer& timer) {
+  run(lights.buffer(), lights.count(), scene_diagonal_m, timer);
+}
+
+void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer) {
+  assert(count >= 0 && lights.bytes() >= size_t(count) * sizeof(shared::VirtualLight));
+  const auto scope = timer.scope(name);
+  const size_t list_bytes = size_t((count + kListStep - 1) / kListStep) * kListStep * sizeof(GLuint);
+  if (cluster_of_.id() == 0 || cluster_of_.bytes() < list_bytes) {
+    cluster_of_ = gl::Buffer(list_bytes);
+    order_ = gl::Buffer(list_bytes);
+  }
+  lights.bind_storage(kLightsBinding);
+  cluster_of_.bind_storage(kClusterOfBinding);
+  centers_.bind_storage(kCentersBinding);
+  centers_.bind_uniform(kCentersBlock);
+  progress_.bind_storage(kProgressBinding);
+  area_lights_.bind_storage(kAreaLightsBinding);
+  order_.bind_storage(kOrderBinding);
+  for (const gl::Program* program : {&seed_, &assign_, &update_, &list_}) program->set("light_count", count);
+  assign_.set("weight_per_m", options_.position_weight / std::max(scene_diagonal_m, 1e-30f));
+
+  seed_.use();
+  gl::dispatch({1, 1, 1}, {1, 1, 1});
+  wait_for_writes();
+  for (int iteration = 0; iteration < kMostIterations && count > 0; ++iteration) {
+    if (iteration > 0) {
+      update_.use();
+      update_.set("iteration", iteration - 1);
+      gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
+      wait_for_writes();
+    }
+    assign_.use();
+    assign_.set("iteration", iteration);
+    gl::dispatch({count, 1, 1}, {kListStep, 1, 1});
+    wait_for_writes();
+  }
+  list_.use();
+  gl::dispatch({options_.count + 1, 1, 1}, {1, 1, 1});
+  wait_for_writes();
+  shape_.use();
+  gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+std::vector<shared::VirtualAreaLight> VirtualAreaLights::download() const {
+  return area_lights_.download<shared::VirtualAreaLight>(size_t(options_.count));
+}
+
+int VirtualAreaLights::alive() const {
+  const auto lights = download();
+  return int(std::count_if(lights.begin(), lights.end(), [](const auto& l) { return l.light_count > 0; }));
+}
+
+int VirtualAreaLights::iterations() const {
+  const auto moved = progress_.download<GLuint>(kMostIterations, sizeof(GLuint));
+  return int(std::count(moved.begin(), moved.end(), 1u));
+}
+
+size_t VirtualAreaLights::bytes() const {
+  return area_lights_.bytes() + cluster_of_.bytes() + order_.bytes() + centers_.bytes() + progress_.bytes();
+}
+
+}  // namespace volgi::screen

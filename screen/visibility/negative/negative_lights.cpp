@@ -1,0 +1,127 @@
+#include "screen/visibility/negative/negative_lights.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace volgi::screen {
+
+namespace {
+
+using Method = NegativeLightOptions::Method;
+constexpr size_t kPixelCandidates =
+    64 * 64;  // CANDIDATES_X, _Y of shaders/screen/visibility/negative/negative_candidates.glsl
+
+/// Turns that light may have to take on its way into the last corner: three axes a round. What it does not find counts
+/// as closed, and loses negative lights there.
+constexpr int kSpreadRounds = 6;
+
+/// What shaders/screen/visibility/negative/passed_light.glsl needs.
+void set_view(const gl::Program& program, const Camera& camera, glm::ivec2 size) {
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  const float half_height = perspective ? std::tan(0.5f * camera.yfov_rad) : camera.ymag;
+  const float pixel = 2.0f * half_height / float(size.y);
+  program.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
+  program.set("view_axis", glm::normalize(glm::vec3(camera.world_from_camera[2])));
+  program.set("pixel_m2", pixel * pixel);
+}
+
+}  // namespace
+
+NegativeLights::NegativeLights(const NegativeLightOptions& options)
+    : options_(options), lights_(NEGATIVE_LIGHTS_MOST * sizeof(shared::NegativeLight)) {
+  assert(options.count >= 1 && options.count <= NEGATIVE_LIGHTS_MOST);
+  std::vector<std::string> defines;
+  if (options_.method != Method::cochran2007) defines.emplace_back("PASSED_FLUX");
+  if (options_.method == Method::sides) defines.emplace_back("SIDES");
+  place_ = gl::Program::compute("screen/visibility/negative/negative_lights.comp.glsl", defines);
+  if (options_.method == Method::cochran2007) return;
+  weigh_ = gl::Program::compute("screen/visibility/negative/negative_weights.comp.glsl", defines);
+  sum_ = gl::Program::compute("screen/visibility/negative/negative_sum.comp.glsl", defines);
+  if (options_.method != Method::sides) return;
+  seed_ = gl::Program::compute("screen/visibility/negative/open_cells_seed.comp.glsl");
+  spread_ = gl::Program::compute("screen/visibility/negative/open_cells_spread.comp.glsl");
+  count_ = gl::Program::compute("screen/visibility/negative/sides_by_block_count.comp.glsl");
+  scan_ = gl::Program::compute("screen/visibility/negative/sides_by_block_scan.comp.glsl");
+  list_ = gl::Program::compute("screen/visibility/negative/sides_by_block_list.comp.glsl");
+}
+
+void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights,
+                         const VoxelGridGl* voxels, gl::PassTimer& timer) {
+  assert((options_.method == Method::sides) == (voxels != nullptr));
+  const auto scope = timer.scope(name);
+  gbuffer.position().bind(0);
+  gbuffer.normals().bind(1);
+  lights.buffer.bind_storage(0);
+  lights_.bind_storage(1);
+  if (voxels != nullptr) {
+    voxels->bind();
+    order_sides(*voxels);
+    find_open_cells(*voxels, lights.reflected);
+  }
+  for (const gl::Program* program : {&weigh_, &place_}) {
+    if (program->id() == 0) continue;
+    program->set("light_count", lights.reflected);
+    set_view(*program, camera, gbuffer.size());
+  }
+  if (options_.method != Method::cochran2007) choose(voxels);
+  place_.use();
+  place_.set("negative_count", options_.count);
+  gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+void NegativeLights::order_sides(const VoxelGridGl& voxels) {
+  constexpr int kBlockEdge = 8;  // of shaders/screen/visibility/negative/sides_by_block.glsl
+  const glm::ivec3 edge = (voxels.grid.cells + kBlockEdge - 1) / kBlockEdge;
+  const int blocks = edge.x * edge.y * edge.z;
+  gl::reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
+  gl::reserve(block_starts_, size_t(blocks) * sizeof(GLuint));
+  sides_by_block_.bind_storage(7);
+  block_starts_.bind_storage(2);
+  const auto run = [](const gl::Program& program, int threads) {
+    program.use();
+    gl::dispatch({threads, 1, 1}, {64, 1, 1});
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  };
+  run(count_, blocks);
+  run(scan_, 1);
+  run(list_, blocks);
+}
+
+void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count) {
+  const size_t bytes = cell_count(voxels.grid) * sizeof(GLuint);
+  if (open_cells_.bytes() != bytes) open_cells_ = gl::Buffer(bytes);
+  open_cells_.clear();
+  open_cells_.bind_storage(6);
+  seed_.use();
+  seed_.set("light_count", light_count);
+  gl::dispatch({light_count, 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  spread_.use();
+  for (int round = 0; round < kSpreadRounds; ++round) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const glm::ivec3 cells = voxels.grid.cells;
+      spread_.set("axis", axis);
+      gl::dispatch({cells.x * cells.y * cells.z / cells[axis], 1, 1}, {64, 1, 1});
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    }
+  }
+}
+
+void NegativeLights::choose(const VoxelGridGl* voxels) {
+  const size_t candidates = voxels != nullptr ? voxels->side_capacity : kPixelCandidates;
+  gl::reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
+  weights_.bind_storage(2);
+  weigh_.use();
+  gl::dispatch({int(candidates), 1, 1}, {64, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_.use();
+  gl::dispatch({1, 1, 1}, {1, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+std::vector<shared::NegativeLight> NegativeLights::download() const {
+  return lights_.download<shared::NegativeLight>(size_t(options_.count));
+}
+
+}  // namespace volgi::screen

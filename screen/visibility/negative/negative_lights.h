@@ -1,0 +1,58 @@
+#pragma once
+#include <vector>
+
+#include "core/camera.h"
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/virtual_light_list_gl.h"
+#include "shaders/screen/visibility/negative/negative_light.shared.h"
+#include "voxel/voxel_grid_gl.h"
+
+namespace volgi::screen {
+
+struct NegativeLightOptions {
+  int count = 256;  // up to NEGATIVE_LIGHTS_MOST
+  /// Where they stand, and their lobes. cochran2007: on pixels of a Halton sequence over the screen, a cosine lobe
+  /// around the mean direction of the light that passes. screen, sides: on pixels, or on sides of the volume, chosen by
+  /// the flux that passes through them, with a lobe as narrow as that light is.
+  enum class Method { cochran2007, screen, sides } method = Method::sides;
+};
+
+/// Pass "screen/visibility/negative/negative_lights": lights to subtract, on surfaces that virtual lights reach from
+/// behind (Cochran and Steele 2007, §3.3): gathered without visibility, those lights pass through the body that the
+/// surface ends; the negative light takes away what passes. We depart: only the chosen places are evaluated, not all
+/// pixels; the flux is physical, irradiance from behind times the area that a place stands for; and places may be sides
+/// of the volume, which know surfaces that the camera does not see. Cost: virtual lights times (negative lights +
+/// candidates).
+class NegativeLights {
+ public:
+  static constexpr const char* name = "screen/visibility/negative/negative_lights";
+  explicit NegativeLights(const NegativeLightOptions& options);
+
+  /// @param voxels  for Method::sides, else null.
+  void run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights, const VoxelGridGl* voxels,
+           gl::PassTimer& timer);
+
+  const gl::Buffer& buffer() const { return lights_; }  // shared::NegativeLight x NEGATIVE_LIGHTS_MOST
+  int count() const { return options_.count; }
+  /// Waits for the GPU; after a frame, not in one.
+  std::vector<shared::NegativeLight> download() const;
+  size_t bytes() const {
+    return lights_.bytes() + weights_.bytes() + open_cells_.bytes() + sides_by_block_.bytes() + block_starts_.bytes();
+  }
+
+ private:
+  void order_sides(const VoxelGridGl& voxels);
+  void find_open_cells(const VoxelGridGl& voxels, int light_count);
+  void choose(const VoxelGridGl* voxels);
+
+  NegativeLightOptions options_;
+  gl::Buffer lights_;
+  gl::Buffer weights_;  // of candidates (shaders/screen/visibility/negative/negative_candidates.glsl)
+  gl::Buffer open_cells_, sides_by_block_, block_starts_;  // of Method::sides
+  gl::Program place_, weigh_, sum_, seed_, spread_, count_, scan_, list_;
+};
+
+}  // namespace volgi::screen

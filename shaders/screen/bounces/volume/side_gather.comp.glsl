@@ -1,0 +1,54 @@
+#version 450 core
+// What every side reflects of the virtual lights: A rho E [W]. Lights come in the order of their area lights, so that
+// each one's shadow is looked up once.
+#include "shared/grid.shared.h"
+#include "shared/side.shared.h"
+#include "screen/visibility/area_maps/virtual_area_light.shared.h"
+#include "shared/virtual_light.shared.h"
+#include "screen/visibility/area_maps/area_light_shadow.glsl"
+
+layout(local_size_x = 64) in;
+layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[VIRTUAL_AREA_LIGHTS_MOST]; };
+layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
+layout(std430, binding = 1) readonly buffer Order { uint order[]; };
+layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };
+layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
+layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
+uniform int light_count;
+
+const float PI = 3.14159265358979;
+
+void main() {
+  uint s = gl_GlobalInvocationID.x;
+  if (s >= side_count || s >= uint(sides.length())) return;
+  Side side = sides[s];
+  vec3 at = vec3(cell_coord(grid, side.cell)) + 0.5;
+  at[side.face >> 1] = side.depth;
+  vec3 position = world_from_cell(grid, at);
+  vec3 reflected = vec3(0.0), emitted = vec3(0.0);
+  uint seen = NO_VIRTUAL_AREA_LIGHT;
+  float visibility = 0.0;
+  for (int i = 0; i < light_count; ++i) {
+    uint index = order[i];
+    uint cluster = cluster_of[index];
+    if (cluster == NO_VIRTUAL_AREA_LIGHT) break;  // those come last
+    VirtualLight l = lights[index];
+    vec3 w = l.position - position;
+    float cosines = max(dot(w, side.normal), 0.0) * max(-dot(w, l.normal), 0.0);
+    if (cosines <= 0.0) continue;
+    if (cluster != seen) {
+      seen = cluster;
+      visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
+    }
+    float squared = dot(w, w);
+    vec3 irradiance = l.flux * (visibility * cosines / (squared * (PI * squared + l.area_m2) + 1e-30));
+    if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
+    else reflected += irradiance;
+  }
+  vec3 reflectance = side.albedo * side.area_m2;
+  punctual_flux[s] = vec4(reflectance * reflected, 0.0);
+  emitted_flux[s] = vec4(reflectance * emitted, 0.0);
+}

@@ -1,8 +1,0 @@
-// Bins of a histogram of positive floats: an eighth of an octave each, at any scale.
-#ifndef VOLGI_EXACT_PIXELS_GLSL
-#define VOLGI_EXACT_PIXELS_GLSL
-
-#define DOUBT_BINS 2048u  // screen/area_light_gather.cpp has the same
-uint doubt_bin(float doubt) { return floatBitsToUint(max(doubt, 0.0)) >> 20; }
-
-#endif

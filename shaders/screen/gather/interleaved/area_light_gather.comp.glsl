@@ -1,0 +1,98 @@
+#version 450 core
+// Irradiance of virtual lights, each as far as its area light is visible: Dong et al. 2009, section 4; we take the
+// disk-to-point form of conventions.md, "VPL".
+// Every interleave-th pixel in both directions takes one subset of the lights, times the number of subsets; with
+// interleave 1, and LISTED (the pixels of a list), all of the lights, and the sum ends in radiance.
+#include "screen/lights/resample/near_light.shared.h"
+#include "shared/octahedral.glsl"
+#include "screen/visibility/area_maps/virtual_area_light.shared.h"
+#include "shared/virtual_light.shared.h"
+#include "screen/visibility/area_maps/area_light_shadow.glsl"
+#include "screen/base/coarse_pixels.glsl"
+
+#ifdef LISTED
+layout(local_size_x = 64) in;
+layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
+#else
+layout(local_size_x = 8, local_size_y = 8) in;
+#endif
+layout(binding = 0) uniform sampler2D position_map;
+layout(binding = 1) uniform sampler2D normal_map;
+layout(binding = 2) uniform sampler2D albedo_map;
+layout(binding = 0, rgba32f) uniform image2D indirect;
+layout(binding = 1, rgba32f) uniform image2D direct;
+layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
+layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[VIRTUAL_AREA_LIGHTS_MOST]; };
+uniform int first_of_block;  // its lights[0], in the order of clusters
+uniform int first_light;     // taken from the block, in that order
+uniform int end_light;
+uniform int area_light_count;
+uniform int interleave;
+uniform ivec2 offset;  // of the pixels in their blocks
+uniform float near_zone;
+uniform int with_direct;
+uniform int begins;
+uniform int ends;
+
+const float PI = 3.14159265358979;
+
+struct Irradiance {
+  vec3 reflected, emitted;
+};
+
+Irradiance sum_of_lights(int begin, int end, vec3 x, vec3 normal, vec3 geometric) {
+  Irradiance sum = Irradiance(vec3(0.0), vec3(0.0));
+  for (int i = begin; i < end; ++i) {
+    vec3 w = lights[i].position - x;
+    float squared = dot(w, w);
+    float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
+    cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
+    float form = 1.0 / (squared * (PI * squared + lights[i].area_m2) + 1e-30);
+    vec3 irradiance = lights[i].flux * (far_share(squared * squared * form, near_zone) * cosines * form);
+    if (lights[i].kind == VIRTUAL_LIGHT_EMITTED) sum.emitted += irradiance;
+    else sum.reflected += irradiance;
+  }
+  return sum;
+}
+
+// A loop over clusters around one over lights: software rasterizers run both sides of a branch, but leave loops.
+Irradiance sum_of_clusters(vec3 x, vec3 normal, vec3 geometric) {
+  Irradiance sum = Irradiance(vec3(0.0), vec3(0.0));
+  for (int k = lights[first_light - first_of_block].source; k < area_light_count; ++k) {
+    int begin = max(area_lights[k].first_light, first_light);
+    if (begin >= end_light) break;
+    int end = min(area_lights[k].first_light + area_lights[k].light_count, end_light);
+    float visibility = area_light_visibility(k, area_lights[k], x, geometric);
+    Irradiance cluster = sum_of_lights(begin - first_of_block, end - first_of_block, x, normal, geometric);
+    if (begin >= end) continue;  // a cluster without lights has no place either
+    sum.reflected += visibility * cluster.reflected;
+    sum.emitted += visibility * cluster.emitted;
+  }
+  return sum;
+}
+
+void main() {
+#ifdef LISTED
+  int index = int(thread_index());
+  if (index >= int(head.count)) return;
+  ivec2 pixel = unpack_pixel(listed[index]);
+#else
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) * interleave + offset;
+  if (any(greaterThanEqual(pixel, textureSize(position_map, 0)))) return;
+#endif
+  vec4 position = texelFetch(position_map, pixel, 0);
+  Irradiance sum = Irradiance(vec3(0.0), vec3(0.0));
+  if (position.w != 0.0 && first_light < end_light) {
+    vec4 normals = texelFetch(normal_map, pixel, 0);
+    sum = sum_of_clusters(position.xyz, octahedral_decode(normals.xy), octahedral_decode(normals.zw));
+  }
+  if (begins == 0) sum.reflected += imageLoad(indirect, pixel).rgb;
+  if (begins == 0 && with_direct != 0) sum.emitted += imageLoad(direct, pixel).rgb;
+  if (ends != 0) {
+    vec3 scale = interleave == 1 ? texelFetch(albedo_map, pixel, 0).rgb / PI : vec3(interleave * interleave);
+    sum.reflected *= scale;
+    sum.emitted *= scale;
+  }
+  imageStore(indirect, pixel, vec4(sum.reflected, 1.0));
+  if (with_direct != 0) imageStore(direct, pixel, vec4(sum.emitted, 1.0));
+}

@@ -1,0 +1,82 @@
+#version 450 core
+// Irradiance of virtual lights, without visibility, at pixels of the G-buffer: conventions.md, "VPL" (the disk-to-point
+// form of Nichols 2010, eq. 4.1), less what negative lights take away. A dispatch takes one block of lights; the first
+// begins the sum, the last ends it.
+// LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
+#include "shared/octahedral.glsl"
+#include "screen/visibility/negative/negative_light.shared.h"
+#include "shared/virtual_light.shared.h"
+#include "screen/base/coarse_pixels.glsl"
+
+layout(local_size_x = 64) in;
+layout(binding = 0) uniform sampler2D position_map;
+layout(binding = 1) uniform sampler2D normal_map;
+layout(binding = 2) uniform sampler2D albedo_map;
+layout(binding = 0, rgba32f) uniform image2D target;  // irradiance; when the sum ends at full resolution radiance
+layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
+layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[NEGATIVE_LIGHTS_MOST]; };
+uniform int first_light;  // of the block
+uniform int end_light;
+uniform int negative_count;
+uniform int begins;
+uniform int ends;
+#ifdef LISTED
+layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
+#endif
+
+const float PI = 3.14159265358979;
+
+vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
+  vec3 sum = vec3(0.0);
+  for (int i = first_light; i < end_light; ++i) {
+    vec3 w = lights[i].position - x;
+    float squared = dot(w, w);
+    float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
+    cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
+    sum += lights[i].flux * (cosines / (squared * (PI * squared + lights[i].area_m2) + 1e-30));
+  }
+  return sum;
+}
+
+vec3 sum_of_negative_lights(vec3 x, vec3 normal) {
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < negative_count; ++i) {
+    vec3 w = negative_lights[i].position - x;
+    float squared = max(dot(w, w), 1e-30);
+    w *= inversesqrt(squared);
+    float cosine = max(-dot(w, negative_lights[i].direction), 0.0);
+    // The lobe widens by the angle that the light's own surface fills: variances 1 / e and A / (4 pi d^2) add.
+    float e = negative_lights[i].exponent;
+    e = max(e / (1.0 + e * negative_lights[i].area_m2 / (4.0 * PI * squared)), 1.0);
+    float lobe = 0.5 * (e + 1.0) * (e == 1.0 ? cosine : pow(cosine, e));
+    sum += negative_lights[i].flux * (lobe * max(dot(w, normal), 0.0) / (PI * squared + negative_lights[i].area_m2));
+  }
+  return sum;
+}
+
+void main() {
+  int index = int(thread_index());
+#ifdef LISTED
+  if (index >= int(head.count)) return;
+  ivec2 texel = unpack_pixel(listed[index]);
+  ivec2 pixel = texel;
+#else
+  ivec2 coarse_size = imageSize(target);
+  if (index >= coarse_size.x * coarse_size.y) return;
+  ivec2 texel = ivec2(index % coarse_size.x, index / coarse_size.x);
+  ivec2 pixel = pixel_of_coarse(texel, textureSize(position_map, 0));
+#endif
+  vec4 position = texelFetch(position_map, pixel, 0);
+  vec4 irradiance = vec4(0.0);
+  if (position.w != 0.0) {
+    vec4 normals = texelFetch(normal_map, pixel, 0);
+    vec3 normal = octahedral_decode(normals.xy);
+    irradiance = vec4(sum_of_lights(position.xyz, normal, octahedral_decode(normals.zw)), 1.0);
+    if (begins == 0) irradiance.rgb += imageLoad(target, texel).rgb;
+    if (ends != 0) {
+      if (negative_count > 0) irradiance.rgb = max(irradiance.rgb - sum_of_negative_lights(position.xyz, normal), 0.0);
+      if (stride == 1) irradiance.rgb *= texelFetch(albedo_map, pixel, 0).rgb / PI;
+    }
+  }
+  imageStore(target, texel, irradiance);
+}

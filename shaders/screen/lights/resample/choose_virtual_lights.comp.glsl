@@ -1,0 +1,43 @@
+#version 450 core
+// Systematic resampling: the candidates that equal steps through the summed weights meet.
+#include "screen/lights/resample/light_candidates.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 3) writeonly buffer Lights { VirtualLight chosen_lights[]; };
+layout(std430, binding = 4) writeonly buffer Ranges { vec2 ranges[]; };
+uniform int first;
+uniform int count;
+
+int candidate_at(float sum) {
+  int low = 0, high = candidate_count - 1;
+  while (low < high) {
+    int middle = (low + high) / 2;
+    if (summed_probability(middle) > sum) high = middle;
+    else low = middle + 1;
+  }
+  return low;
+}
+
+// Where a sum is reached: candidates and parts of one, from 0 to their number.
+float place_of(float sum) {
+  int candidate = candidate_at(sum);
+  float before = summed_probability(candidate - 1);
+  float own = summed_probability(candidate) - before;
+  return float(candidate) + (own > 0.0 ? clamp((sum - before) / own, 0.0, 1.0) : 0.5);
+}
+
+void main() {
+  int k = int(gl_GlobalInvocationID.x);
+  if (k >= count) return;
+  int candidate = candidate_at((float(k) + 0.5) / float(count));
+  float probability = summed_probability(candidate) - summed_probability(candidate - 1);
+  VirtualLight l = candidate_lights[first_candidate + candidate];
+  // Candidates stand for one part in candidate_count each, the chosen ones for one in count.
+  float share = probability > 0.0 ? 1.0 / (float(count) * probability) : 0.0;
+  l.flux *= share;
+  // One that is chosen more than once stays as large as it is: its copies lie in one place and are one light together.
+  l.area_m2 *= max(share, 1.0);
+  chosen_lights[first + k] = l;
+  ranges[first + k] = vec2(k == 0 ? 0.0 : place_of(float(k) / float(count)),
+                           k == count - 1 ? float(candidate_count) : place_of(float(k + 1) / float(count)));
+}

@@ -1,0 +1,23 @@
+#version 450 core
+// What each candidate sends to the receivers, without visibility.
+#include "shared/luminance.glsl"
+#include "screen/lights/resample/light_candidates.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= candidate_count) return;
+  VirtualLight l = candidate_lights[first_candidate + i];
+  float flux = luminance(l.flux);
+  float sum = 0.0;
+  if (flux > 0.0) {
+    for (int k = 0; k < RECEIVERS; ++k) {
+      vec3 w = l.position - receivers[k].position.xyz;
+      float squared = dot(w, w);
+      float cosines = max(dot(w, receivers[k].normal.xyz), 0.0) * max(-dot(w, l.normal), 0.0);
+      sum += receivers[k].position.w * cosines / (squared * (3.14159265358979 * squared + l.area_m2) + 1e-30);
+    }
+  }
+  weights[first_candidate + i] = vec2(flux * sum, flux);
+}

@@ -1,0 +1,75 @@
+#version 450 core
+// The parts and quarters of every virtual light of one source.
+#include "shared/hilbert.shared.h"
+#include "screen/lights/resample/near_light.shared.h"
+#include "shared/octahedral.glsl"
+#include "screen/lights/rsm/virtual_light_sample.glsl"
+
+layout(local_size_x = 64) in;
+layout(std430, binding = 5) readonly buffer Candidates { VirtualLight candidate_lights[]; };
+layout(std430, binding = 6) readonly buffer Ranges { vec2 ranges[]; };  // of the candidates of the source, from 0
+layout(std430, binding = 7) writeonly buffer Pieces { LightPiece pieces[]; };
+layout(std430, binding = 8) writeonly buffer NearLights { NearLight near_lights[]; };
+uniform int first_candidate;
+uniform int candidate_count;
+uniform int along_curve;  // 1: parts are new samples; 0: the nearest candidates
+uniform float measure;    // of all candidates
+
+VirtualLight part_at(ReflectiveShadowLight l, vec2 range, int k) {
+  float share = (range.y - range.x) / float(LIGHT_PARTS);
+  float at = mix(range.x, range.y, (float(k) + 0.5) / float(LIGHT_PARTS));
+  if (along_curve != 0) {
+    vec2 place = hilbert_point(uint(clamp(at / float(candidate_count), 0.0, 0.9999999) * 4294967296.0));
+    return sample_place(l, place, measure * share / float(candidate_count));
+  }
+  VirtualLight part = candidate_lights[first_candidate + clamp(int(at), 0, candidate_count - 1)];
+  part.flux *= share;
+  part.area_m2 *= share;
+  return part;
+}
+
+LightPiece piece(vec3 position, float area_m2, vec3 flux, vec3 normal) {
+  return LightPiece(position, area_m2, flux, packSnorm2x16(octahedral_encode(normal)));
+}
+
+void include_part(inout NearLight near, inout bool flat_light, VirtualLight part) {
+  vec3 d = part.position - near.position;
+  near.spread_m = max(near.spread_m, length(d));
+  near.rise_m = min(near.rise_m, dot(d, near.normal));
+  flat_light = flat_light && dot(part.normal, near.normal) > 0.9999;
+}
+
+void main() {
+  int i = int(gl_GlobalInvocationID.x);
+  if (i >= count) return;
+  ReflectiveShadowLight l = rsm_lights[max(light, 0)];
+  VirtualLight all = virtual_lights[first + i];
+  NearLight near = NearLight(all.position, all.area_m2, all.normal, 0.0, 0.0, 0.0, 0.0, 0.0);
+  bool flat_light = true;
+  int first_piece = (first + i) * LIGHT_PIECES;
+  for (int quarter = 0; quarter < LIGHT_QUARTERS; ++quarter) {
+    // The mean by flux, which nothing can hide: pieces have no visibility of their own.
+    vec3 position = vec3(0.0), normal = vec3(0.0), flux = vec3(0.0);
+    float area_m2 = 0.0, weight = 0.0;
+    const int parts = LIGHT_PARTS / LIGHT_QUARTERS;
+    for (int k = quarter * parts; k < (quarter + 1) * parts; ++k) {
+      VirtualLight part = part_at(l, ranges[first + i], k);
+      pieces[first_piece + LIGHT_QUARTERS + k] = piece(part.position, part.area_m2, part.flux, part.normal);
+      if (part.flux == vec3(0.0)) continue;
+      include_part(near, flat_light, part);
+      float w = part.flux.r + part.flux.g + part.flux.b;
+      position += w * part.position;
+      normal += w * part.normal;
+      weight += w;
+      flux += part.flux;
+      area_m2 += part.area_m2;
+    }
+    bool dark = weight <= 0.0;  // and then anywhere
+    pieces[first_piece + quarter] = piece(dark ? all.position : position / weight, area_m2, flux,
+                                          dark ? all.normal : normalize(normal));
+  }
+  // What is lower over a flat light than a thousandth of its edge sees it at a cosine under that: left out, or every
+  // pixel of the light's own plane would be looked at. Normals within 0.8 degrees count as one.
+  near.rise_m = flat_light ? near.rise_m + 1e-3 * sqrt(all.area_m2) : -3.0e38;
+  near_lights[first + i] = near;
+}

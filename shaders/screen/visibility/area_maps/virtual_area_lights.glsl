@@ -1,0 +1,28 @@
+// What the passes that cluster virtual lights share. Dong et al. 2009, sections 5 and 6.
+#include "screen/visibility/area_maps/virtual_area_light.shared.h"
+#include "shared/virtual_light.shared.h"
+
+struct ClusterCenter {
+  vec3 position;
+  vec3 normal;
+};
+
+#ifdef CENTERS_UNIFORM
+layout(std140, binding = 0) uniform Centers { ClusterCenter centers[VIRTUAL_AREA_LIGHTS_MOST]; };
+#else
+layout(std430, binding = 2) buffer Centers { ClusterCenter centers[]; };
+#endif
+layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
+#ifdef FOURS_OF_CLUSTERS
+layout(std430, binding = 1) readonly buffer ClusterOf { uvec4 clusters_of_four[]; };
+#else
+layout(std430, binding = 1) buffer ClusterOf { uint cluster_of[]; };  // behind the lights NO_VIRTUAL_AREA_LIGHT
+#endif
+layout(std430, binding = 3) buffer Progress {
+  uint seeded;   // clusters with a seed; the others stay empty
+  uint moved[];  // of every iteration: whether a light changed its cluster
+};
+uniform int light_count;
+uniform int iteration;
+
+bool has_flux(int i) { return max(lights[i].flux.x, max(lights[i].flux.y, lights[i].flux.z)) > 0.0; }

@@ -1,0 +1,16 @@
+#version 450 core
+// Flux that passes through each candidate [W], luminance.
+#include "screen/visibility/negative/negative_surface.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+  int candidate = int(gl_GlobalInvocationID.x);
+  if (candidate >= candidate_count()) return;
+  ExitSurface surface = exit_surface(candidate);
+  PassedLight sum = PassedLight(vec3(0.0), vec3(0.0));
+  if (surface.area_m2 > 0.0) {
+    for (int i = 0; i < light_count; ++i) add_passed_light(i, surface.position, surface.normal, sum);
+  }
+  weights[candidate] = luminance(sum.irradiance) * surface.area_m2;
+}

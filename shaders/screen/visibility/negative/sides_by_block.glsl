@@ -1,0 +1,29 @@
+// Sides in the order of blocks of 8 x 8 x 8 cells, and of cells in a block: neighbours in the list are neighbours in
+// space, in all three directions, so that equal steps through sums over it are an even choice and stay one as light
+// moves. (Rows of cells, the order of the volume's own list, are near in one direction only.)
+#ifndef VOLGI_SIDES_BY_BLOCK_GLSL
+#define VOLGI_SIDES_BY_BLOCK_GLSL
+#include "screen/visibility/negative/open_cells.glsl"
+
+#define BLOCK_EDGE 8
+
+layout(std430, binding = 7) buffer SidesByBlock { uint sides_by_block[]; };
+#ifdef MAKES_THE_LIST
+layout(std430, binding = 2) buffer BlockStarts { uint block_starts[]; };  // counts first, then where each block begins
+#endif
+
+ivec3 blocks_of_grid() { return (grid.cells + BLOCK_EDGE - 1) / BLOCK_EDGE; }
+
+int block_count() {
+  ivec3 blocks = blocks_of_grid();
+  return blocks.x * blocks.y * blocks.z;
+}
+
+// Cell k of a block, or one outside the grid.
+ivec3 cell_of_block(int block, int k) {
+  ivec3 blocks = blocks_of_grid();
+  ivec3 at = ivec3(block % blocks.x, block / blocks.x % blocks.y, block / (blocks.x * blocks.y));
+  return at * BLOCK_EDGE + ivec3(k % BLOCK_EDGE, k / BLOCK_EDGE % BLOCK_EDGE, k / (BLOCK_EDGE * BLOCK_EDGE));
+}
+
+#endif

@@ -1,0 +1,302 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+
+#include "core/image.h"
+#include "core/log.h"
+#include "core/scene.h"
+#include "core/surface.h"
+#include "tests/support/gltf_writer.h"
+
+namespace volgi {
+namespace {
+
+using test::GltfWriter;
+using test::Json;
+using test::TemporaryFolder;
+
+void expect_near(glm::vec3 a, glm::vec3 b, float tolerance = 1e-5f) {
+  EXPECT_LT(glm::distance(a, b), tolerance)
+      << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " " << b.z;
+}
+
+class SceneMaterials : public ::testing::Test {
+ protected:
+  Scene load() { return load_scene(writer.save_glb(folder / "scene.glb")); }
+  /// A triangle whose corner k has uv `corners[k]` in both sets, unless `second` is given.
+  int textured_triangle(const std::vector<float>& corners, const std::vector<float>& second = {}) {
+    const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    const int uv0 = writer.floats(corners, "VEC2");
+    const int uv1 = second.empty() ? uv0 : writer.floats(second, "VEC2");
+    return writer.mesh_node(
+        {{"material", 0}, {"attributes", {{"POSITION", p}, {"TEXCOORD_0", uv0}, {"TEXCOORD_1", uv1}}}});
+  }
+  /// 2x2: red, green / blue, white with alpha 0; index of a texture on it.
+  int texture(const Json& sampler = Json()) {
+    const std::string bytes = test::png(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 0});
+    const int view = writer.view(std::vector<char>(bytes.begin(), bytes.end()));
+    Json t = {{"source", writer.push("images", {{"bufferView", view}, {"mimeType", "image/png"}})}};
+    if (!sampler.is_null()) t["sampler"] = writer.push("samplers", sampler);
+    return writer.push("textures", t);
+  }
+  Json& material(Json pbr = Json::object()) {
+    if (!pbr.contains("metallicFactor")) pbr["metallicFactor"] = 0.0;
+    writer.push("materials", {{"name", "paint"}, {"pbrMetallicRoughness", pbr}});
+    return writer.root["materials"].back();
+  }
+  static SurfacePoint corner(const Scene& scene, int k) {
+    return surface_point(scene, scene.meshes[0], 0, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f);
+  }
+
+  TemporaryFolder folder;
+  GltfWriter writer;
+};
+
+constexpr Json::value_t no_sampler = Json::value_t::null;
+const Json nearest = {{"magFilter", 9728}, {"minFilter", 9728}};
+
+TEST_F(SceneMaterials, FactorsAndDefaults) {
+  Json& m = material({{"baseColorFactor", {0.8, 0.6, 0.4, 0.5}}, {"metallicFactor", 0.25}});
+  m["alphaMode"] = "MASK";
+  m["alphaCutoff"] = 0.6;
+  m["doubleSided"] = true;
+  m["emissiveFactor"] = {1.0, 0.5, 0.0};
+  m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = 20;
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  const Scene scene = load();
+  const Material& read = scene.materials[0];
+  EXPECT_EQ(read.name, "paint");
+  EXPECT_EQ(read.alpha_mode, AlphaMode::mask);
+  EXPECT_TRUE(read.double_sided);
+  EXPECT_TRUE(read.is_emissive());
+  const SurfacePoint point = corner(scene, 0);
+  expect_near(point.albedo, {0.6f, 0.45f, 0.3f});
+  expect_near(point.emission, {20, 10, 0});
+  EXPECT_EQ(point.alpha, 0.0f);  // 0.5 < 0.6
+  expect_near(point.geometric_normal, {0, 0, 1});
+}
+
+TEST_F(SceneMaterials, AlphaModes) {
+  Json& m = material({{"baseColorFactor", {1, 1, 1, 0.5}}});
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(corner(load(), 0).alpha, 1.0f);
+  m["alphaMode"] = "BLEND";
+  EXPECT_EQ(corner(load(), 0).alpha, 0.5f);
+  m["alphaMode"] = "MASK";  // cutoff 0.5 by default, inclusive
+  EXPECT_EQ(corner(load(), 0).alpha, 1.0f);
+}
+
+TEST_F(SceneMaterials, DefaultMetalIsBlackAndSaysSo) {
+  writer.push("materials", {{"name", "chrome"}});
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  ::testing::internal::CaptureStderr();
+  const Scene scene = load();
+  expect_near(corner(scene, 0).albedo, {0, 0, 0});
+  EXPECT_EQ(largest_albedo(scene), 0.0f);
+  const std::string warning = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(warning.find("chrome"), std::string::npos) << warning;
+}
+
+TEST_F(SceneMaterials, VertexColourMultipliesTheAlbedo) {
+  material({{"baseColorFactor", {0.5, 1, 1, 1}}});
+  const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const int c = writer.floats({1, 0, 0, 0, 1, 0, 0, 0, 1}, "VEC3");
+  writer.mesh_node({{"material", 0}, {"attributes", {{"POSITION", p}, {"COLOR_0", c}}}});
+  const Scene scene = load();
+  expect_near(surface_point(scene, scene.meshes[0], 0, 0.25f, 0.25f).albedo, {0.25f, 0.25f, 0.25f});
+  EXPECT_FLOAT_EQ(largest_albedo(scene), 1.0f);
+}
+
+TEST_F(SceneMaterials, NearestTexelsOfEmbeddedExternalAndDataUriImages) {
+  material({{"baseColorTexture", {{"index", texture(nearest)}}}});
+  textured_triangle({0.25f, 0.25f, 0.75f, 0.25f, 0.25f, 0.75f});
+  const auto check = [&](const Scene& scene) {
+    expect_near(corner(scene, 0).albedo, {1, 0, 0});
+    expect_near(corner(scene, 1).albedo, {0, 1, 0});
+    expect_near(corner(scene, 2).albedo, {0, 0, 1});
+  };
+  check(load());
+  const std::string bytes = test::png(2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 0});
+  std::filesystem::create_directory(folder / "tex");
+  test::write_bytes(folder / "tex/a b.png", bytes);
+  writer.root["images"][0] = {{"uri", "tex/a%20b.png"}};
+  check(load());
+  check(load_scene(writer.save_gltf(folder / "scene.gltf")));
+  writer.root["images"][0] = {{"uri", "data:image/png;base64," + test::base64(bytes)}};
+  check(load());
+}
+
+TEST_F(SceneMaterials, BilinearFilteringDecodesFirst) {
+  material({{"baseColorTexture", {{"index", texture(Json{{"wrapS", 33071}, {"wrapT", 33071}})}}}});
+  textured_triangle({0.5f, 0.25f, 0.5f, 0.5f, 0, 0});
+  const Scene scene = load();
+  expect_near(corner(scene, 0).albedo, {0.5f, 0.5f, 0});  // linear mean of red and green
+  expect_near(corner(scene, 1).albedo, {0.5f, 0.5f, 0.5f});
+  expect_near(corner(scene, 2).albedo, {1, 0, 0});
+}
+
+TEST_F(SceneMaterials, SrgbIsDecodedForColourAndNotForMetal) {
+  const std::string bytes = test::png(1, 1, {128, 128, 128, 255});
+  writer.push("images", {{"uri", "data:image/png;base64," + test::base64(bytes)}});
+  writer.push("textures", {{"source", 0}});
+  const Json use = {{"index", 0}};
+  Json& m = material({{"baseColorTexture", use}, {"metallicRoughnessTexture", use}, {"metallicFactor", 0.5}});
+  m["emissiveTexture"] = use;
+  m["emissiveFactor"] = {2, 2, 2};
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  const Scene scene = load();
+  const float linear = srgb_decode(128.0f / 255.0f);
+  expect_near(corner(scene, 0).albedo, glm::vec3(linear * (1.0f - 0.5f * 128.0f / 255.0f)));
+  expect_near(corner(scene, 0).emission, glm::vec3(2.0f * linear));
+  EXPECT_NEAR(largest_albedo(scene), corner(scene, 0).albedo.x, 1e-6f);
+  EXPECT_EQ(scene.images.size(), 1u);
+}
+
+TEST_F(SceneMaterials, MetallicIsTheBlueChannel) {
+  const std::string bytes = test::png(1, 1, {10, 20, 51, 255});
+  writer.push("images", {{"uri", "data:image/png;base64," + test::base64(bytes)}});
+  writer.push("textures", {{"source", 0}});
+  material({{"metallicRoughnessTexture", {{"index", 0}}}, {"metallicFactor", 1.0}});
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  expect_near(corner(load(), 0).albedo, glm::vec3(0.8f));
+}
+
+TEST_F(SceneMaterials, WrapModes) {
+  const struct {
+    int mode;
+    std::vector<glm::vec3> expected;  // at u = -0.25, 1.25, 2.25 with v = 0.25
+  } cases[] = {{10497, {{0, 1, 0}, {1, 0, 0}, {1, 0, 0}}},
+               {33648, {{1, 0, 0}, {0, 1, 0}, {1, 0, 0}}},
+               {33071, {{1, 0, 0}, {0, 1, 0}, {0, 1, 0}}}};
+  for (const auto& c : cases) {
+    writer = GltfWriter();
+    Json sampler = nearest;
+    sampler["wrapS"] = c.mode;
+    material({{"baseColorTexture", {{"index", texture(sampler)}}}});
+    textured_triangle({-0.25f, 0.25f, 1.25f, 0.25f, 2.25f, 0.25f});
+    const Scene scene = load();
+    for (int k = 0; k < 3; ++k) expect_near(corner(scene, k).albedo, c.expected[size_t(k)]);
+  }
+}
+
+TEST_F(SceneMaterials, BilinearNeighboursWrapAcrossTheEdge) {
+  material({{"baseColorTexture", {{"index", texture(Json::object())}}}});
+  textured_triangle({0.0f, 0.25f, 1.0f, 0.25f, -7.0f, 0.25f});
+  const Scene scene = load();
+  for (int k = 0; k < 3; ++k) expect_near(corner(scene, k).albedo, {0.5f, 0.5f, 0});
+}
+
+TEST_F(SceneMaterials, AbsurdTextureCoordinatesAreHarmless) {
+  material({{"baseColorTexture", {{"index", texture(Json::object())}}}});
+  textured_triangle({3e38f, -3e38f, 1e20f, 1e-40f, -1e-30f, 1e30f});
+  const Scene scene = load();
+  for (const float u : {0.0f, 0.3f, 1.0f}) {
+    EXPECT_TRUE(std::isfinite(surface_point(scene, scene.meshes[0], 0, u, 0.0f).albedo.x));
+  }
+  EXPECT_TRUE(std::isfinite(sample_texture(scene, 0, {std::nanf(""), INFINITY}, true).x));
+}
+
+TEST_F(SceneMaterials, SecondTextureCoordinates) {
+  material({{"baseColorTexture", {{"index", texture(nearest)}, {"texCoord", 1}}}});
+  textured_triangle({0.25f, 0.25f, 0.25f, 0.25f, 0.25f, 0.25f}, {0.75f, 0.25f, 0.25f, 0.75f, 0.75f, 0.25f});
+  const Scene scene = load();
+  expect_near(corner(scene, 0).albedo, {0, 1, 0});
+  expect_near(corner(scene, 1).albedo, {0, 0, 1});
+}
+
+TEST_F(SceneMaterials, TextureTransform) {
+  // The extension's own example: the lower left quadrant of the image, turned by a quarter.
+  const Json transform = {
+      {"offset", {0, 1}}, {"rotation", glm::half_pi<double>()}, {"scale", {0.5, 0.5}}, {"texCoord", 1}};
+  material(
+      {{"baseColorTexture", {{"index", texture(nearest)}, {"extensions", {{"KHR_texture_transform", transform}}}}}});
+  textured_triangle({0, 0, 0, 0, 0, 0}, {0.1f, 0.1f, 0.9f, 0.1f, 0.1f, 0.9f});
+  const Scene scene = load();
+  const TextureUse& use = scene.materials[0].base_color;
+  EXPECT_EQ(use.texcoord, 1);
+  const auto transformed = [&](float u, float v) { return glm::vec2(use.uv_from_texcoord * glm::vec3(u, v, 1)); };
+  for (const glm::vec2 uv : {transformed(0.1f, 0.1f), transformed(0.9f, 0.1f), transformed(0.1f, 0.9f)}) {
+    EXPECT_GT(uv.x, 0.0f);
+    EXPECT_LT(uv.x, 0.5f);
+    EXPECT_GT(uv.y, 0.5f);
+    EXPECT_LT(uv.y, 1.0f);
+  }
+  EXPECT_LT(glm::distance(transformed(1, 0), glm::vec2(0, 0.5f)), 1e-6f);
+  EXPECT_LT(glm::distance(transformed(0, 1), glm::vec2(0.5f, 1)), 1e-6f);
+  expect_near(corner(scene, 0).albedo, {0, 0, 1});
+}
+
+TEST_F(SceneMaterials, SamplerModes) {
+  const struct {
+    int min, mag;
+    bool minify_nearest, magnify_nearest, mipmap, mipmap_nearest;
+  } cases[] = {{9728, 9728, true, true, false, false}, {9729, 9729, false, false, false, false},
+               {9984, 9729, true, false, true, true},  {9985, 9729, false, false, true, true},
+               {9986, 9729, true, false, true, false}, {9987, 9729, false, false, true, false}};
+  Json& m = material();
+  for (const auto& c : cases) {
+    m["pbrMetallicRoughness"]["baseColorTexture"]["index"] = texture(Json{{"minFilter", c.min}, {"magFilter", c.mag}});
+    const Sampler s = load().textures[0].sampler;
+    EXPECT_EQ(s.minify_nearest, c.minify_nearest) << c.min;
+    EXPECT_EQ(s.magnify_nearest, c.magnify_nearest) << c.min;
+    EXPECT_EQ(s.mipmap, c.mipmap) << c.min;
+    EXPECT_EQ(s.mipmap_nearest, c.mipmap_nearest) << c.min;
+  }
+  m["pbrMetallicRoughness"]["baseColorTexture"]["index"] = texture(Json(no_sampler));
+  EXPECT_TRUE(load().textures[0].sampler.mipmap);
+}
+
+TEST_F(SceneMaterials, UnusedImagesAreNotDecoded) {
+  writer.push("images", {{"uri", "data:image/png;base64," + test::base64("not a picture")}});
+  writer.push("textures", {{"source", 0}});
+  material()["normalTexture"] = {{"index", 0}};
+  ::testing::internal::CaptureStderr();
+  EXPECT_TRUE(load().images.empty());
+  EXPECT_NE(::testing::internal::GetCapturedStderr().find("normal maps"), std::string::npos);
+}
+
+TEST_F(SceneMaterials, IgnoredFeaturesAreWarnedAboutOnce) {
+  writer.root["extensionsUsed"] = {"KHR_materials_unlit"};
+  material()["extensions"]["KHR_materials_unlit"] = Json::object();
+  const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const Json primitive = {{"material", 0}, {"attributes", {{"POSITION", p}}}, {"targets", {{{"POSITION", p}}}}};
+  writer.mesh_node(primitive, {{"skin", 0}});
+  writer.mesh_node(primitive, {{"skin", 0}});
+  writer.push("skins", {{"joints", {0}}});
+  ::testing::internal::CaptureStderr();
+  load();
+  load();
+  const std::string warnings = ::testing::internal::GetCapturedStderr();
+  for (const char* text : {"KHR_materials_unlit", "skins", "morph"}) {
+    const size_t first = warnings.find(text);
+    ASSERT_NE(first, std::string::npos) << text;
+    EXPECT_EQ(warnings.find(text, first + 1), std::string::npos) << text;
+  }
+}
+
+TEST_F(SceneMaterials, QuietSilencesWarnings) {
+  writer.push("materials", {{"name", "quiet metal"}});
+  set_quiet(true);
+  ::testing::internal::CaptureStderr();
+  load();
+  set_quiet(false);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Surface, ShadingNormalIsUnitAndOnTheFrontSide) {
+  Scene scene;
+  scene.materials.emplace_back();
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals = {{0, 0, -1}, {0.6f, 0, -0.8f}, {0, 0, -1}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(mesh);
+  const SurfacePoint point = surface_point(scene, scene.meshes[0], 0, 0.5f, 0.25f);
+  expect_near(point.position, {0.5f, 0.25f, 0});
+  EXPECT_NEAR(glm::length(point.shading_normal), 1.0f, 1e-6f);
+  EXPECT_GT(point.shading_normal.z, 0.0f);
+}
+
+}  // namespace
+}  // namespace volgi
