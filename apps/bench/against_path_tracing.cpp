@@ -34,7 +34,7 @@ PathTracerOptions tracer_options(const AgainstPathTracingOptions& options, std::
 
 screen::FrameOptions hybrid_options(screen::LightPart light, int size) {
   screen::FrameOptions o;
-  o.gi = screen::GiMode::hybrid;
+  o.recipe = "hybrid";
   o.light = light;
   o.size = glm::ivec2(size);
   return o;

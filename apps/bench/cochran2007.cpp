@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "apps/bench/repeated_frame.h"
+#include "screen/gather/strided/virtual_light_gather.h"
+#include "screen/lights/rsm/virtual_lights.h"
+#include "screen/visibility/negative/negative_lights.h"
 
 namespace volgi::app {
 
@@ -17,7 +20,7 @@ double gather_ms(RepeatedFrame& picture) {
   return picture.passes_ms({screen::VirtualLightGather::name, screen::VirtualLightGather::discontinuity_name});
 }
 
-double coarse_share(const RepeatedFrame& picture) { return double(picture.frame().report().coarse_share); }
+double coarse_share(const RepeatedFrame& picture) { return double(picture.frame().report().number("coarse_share")); }
 
 /// Root mean square of the difference, in percent of the reference's largest value.
 double rms_percent_of_range(const Image& reference, const Image& image) {
@@ -34,10 +37,10 @@ double rms_percent_of_range(const Image& reference, const Image& image) {
 screen::FrameOptions options_of(int vpls, int negative) {
   screen::FrameOptions o;
   o.size = {640, 480};
-  o.gi = negative > 0 ? screen::GiMode::negative : screen::GiMode::vpl;
-  o.virtual_lights.count = vpls;
-  o.negative_lights.count = std::max(negative, 1);
-  o.negative_lights.method = screen::NegativeLightOptions::Method::cochran2007;
+  o.recipe = negative > 0 ? "negative" : "vpl";
+  o.of<screen::VirtualLightOptions>().count = vpls;
+  o.of<screen::NegativeLightOptions>().count = std::max(negative, 1);
+  o.of<screen::NegativeLightOptions>().method = screen::NegativeLightOptions::Method::cochran2007;
   return o;
 }
 
@@ -73,7 +76,7 @@ nlohmann::json lights_table(const Scene& scene, const gl::Context& context, int 
 double contrast_for(const Scene& scene, const gl::Context& context, screen::FrameOptions options, double share) {
   double low = 0.0, high = 1.0;
   for (int i = 0; i < 12; ++i) {
-    options.gather.contrast = float(0.5 * (low + high));
+    options.of<screen::GatherOptions>().contrast = float(0.5 * (low + high));
     RepeatedFrame picture(scene, context, options);
     picture.render();
     const double reached = coarse_share(picture);
@@ -85,7 +88,7 @@ double contrast_for(const Scene& scene, const gl::Context& context, screen::Fram
 nlohmann::json share_table(const Scene& scene, const gl::Context& context, int frames) {
   screen::FrameOptions full = options_of(100, 50);
   full.light = screen::LightPart::indirect;
-  full.gather.stride = 1;
+  full.of<screen::GatherOptions>().stride = 1;
   nlohmann::json rows = nlohmann::json::array();
   const auto add = [&](const std::string& what, const screen::FrameOptions& o, const ShareRow* paper) {
     RepeatedFrame every_pixel(scene, context, full), picture(scene, context, o);
@@ -102,20 +105,21 @@ nlohmann::json share_table(const Scene& scene, const gl::Context& context, int f
   };
   for (const ShareRow& row : kShares) {
     screen::FrameOptions o = full;
-    o.gather.stride = row.share > 0.0 ? 2 : 1;
-    if (row.share == 1.0) o.gather = {2, 10.0f, 1.0f, 1.0f};
-    if (row.share > 0.0 && row.share < 1.0) o.gather.contrast = float(contrast_for(scene, context, o, row.share));
+    o.of<screen::GatherOptions>().stride = row.share > 0.0 ? 2 : 1;
+    if (row.share == 1.0) o.of<screen::GatherOptions>() = {2, 10.0f, 1.0f, 1.0f};
+    if (row.share > 0.0 && row.share < 1.0)
+      o.of<screen::GatherOptions>().contrast = float(contrast_for(scene, context, o, row.share));
     add(row.share == 0.0   ? "every pixel"
         : row.share == 1.0 ? "coarse wherever there is something"
-                           : fmt::format("contrast {:.3g}", o.gather.contrast),
+                           : fmt::format("contrast {:.3g}", o.of<screen::GatherOptions>().contrast),
         o, &row);
   }
   screen::FrameOptions defaults = full;
-  defaults.gather = {};
+  defaults.of<screen::GatherOptions>() = {};
   add("defaults", defaults, nullptr);
   for (screen::FrameOptions* o : {&full, &defaults}) {
-    o->virtual_lights.count = 300;
-    o->negative_lights.count = 150;
+    o->of<screen::VirtualLightOptions>().count = 300;
+    o->of<screen::NegativeLightOptions>().count = 150;
   }
   add("defaults, 300 and 150 lights", defaults, nullptr);
   return rows;

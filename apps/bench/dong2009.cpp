@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "apps/bench/repeated_frame.h"
+#include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/area_maps/convolution_shadow.h"
 
 namespace volgi::app {
@@ -45,13 +47,13 @@ const Step kSteps[] = {
 
 screen::FrameOptions frame_options(const AreaLightShadowName& shadow, int size) {
   screen::FrameOptions o;
-  o.gi = screen::GiMode::val;
+  o.recipe = "val";
   o.size = glm::ivec2(size);
-  o.area_light_shadow = screen::AreaLightShadow::Method(shadow.number);
+  o.of<screen::AreaMapOptions>().shadow = screen::AreaLightShadow::Method(shadow.number);
   // The paper's own, not our defaults.
-  o.area_lights.count = 30;
-  o.area_light_map = 256;
-  o.area_light_gather.interleave = 8;
+  o.of<screen::VirtualAreaLightOptions>().count = 30;
+  o.of<screen::AreaMapOptions>().texels = 256;
+  o.of<screen::AreaLightGatherOptions>().interleave = 8;
   return o;
 }
 
@@ -78,7 +80,7 @@ nlohmann::json scene_times(const Scene& scene, const gl::Context& context, const
   const screen::FrameReport report = pictures[0]->frame().report();
   return {
       {"scene", scene.name},           {"triangles", scene.triangle_count()}, {"size", {options.size, options.size}},
-      {"vpls", report.virtual_lights}, {"vals", report.area_lights},          {"methods", methods}};
+      {"vpls", report.number("vpls")}, {"vals", report.number("vals")},       {"methods", methods}};
 }
 
 nlohmann::json paper_of(const std::string& name) {

@@ -6,6 +6,11 @@
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/yardstick.h"
 #include "reference/virtual_light_tracer.h"
+#include "screen/gather/interleaved/area_light_gather.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/lights/rsm/virtual_lights.h"
+#include "screen/visibility/area_maps/area_maps_stage.h"
+#include "screen/visibility/area_maps/virtual_area_lights.h"
 
 namespace volgi::app {
 
@@ -34,15 +39,16 @@ bool shown(const AreaLightShadowName& shadow, int lights, int area_lights) {
 
 screen::FrameOptions frame_options(int lights, int area_lights, const AreaLightShadowName& shadow, int size) {
   screen::FrameOptions o;
-  o.gi = screen::GiMode::val;
+  o.recipe = "val";
   o.light = screen::LightPart::indirect;
   o.size = glm::ivec2(size);
-  o.virtual_lights.count = lights;
-  o.area_lights.count = area_lights;
-  o.area_light_map = 256;  // the paper's
-  o.area_light_shadow = screen::AreaLightShadow::Method(shadow.number);
-  o.area_light_gather.interleave = 1;
-  o.near_zone = 0.0f;  // parts of lights are not in the list that exact visibility is asked for
+  o.of<screen::VirtualLightOptions>().count = lights;
+  o.of<screen::VirtualAreaLightOptions>().count = area_lights;
+  o.of<screen::AreaMapOptions>().texels = 256;  // the paper's
+  o.of<screen::AreaMapOptions>().shadow = screen::AreaLightShadow::Method(shadow.number);
+  o.of<screen::AreaLightGatherOptions>().interleave = 1;
+  o.of<screen::ResampleOptions>().near_zone =
+      0.0f;  // parts of lights are not in the list that exact visibility is asked for
   return o;
 }
 

@@ -68,10 +68,10 @@ nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme,
   const Scene scene = this->scene(name);
   screen::FrameOptions options;
   options.size = glm::ivec2(size.value_or(512));
-  options.volume.grid_cells = grid_cells;
-  options.volume.scheme.scheme = scheme;
+  options.of<VolumeOptions>().grid_cells = grid_cells;
+  options.of<VolumeOptions>().scheme.scheme = scheme;
   options.backend = screen::Backend::gpu;
-  if (scheme == Scheme::conservative) options.volume.iterations = iterations;
+  if (scheme == Scheme::conservative) options.of<VolumeOptions>().iterations = iterations;
   RepeatedFrame picture(scene, context, options);
   picture.render_repeatedly(frames);
   auto stats =

@@ -18,6 +18,8 @@
 #include "core/scene_source.h"
 #include "core/virtual_light_list.h"
 #include "screen/base/image_from_texture.h"
+#include "screen/frame/frame.h"
+#include "screen/frame/registry.h"
 
 namespace volgi::app {
 
@@ -45,8 +47,8 @@ struct RenderCommand {
   void render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving, const FrameTimes& times,
                         const WorldBox& box, gl::PassTimer& timer) const;
   void write_picture(const screen::Frame& picture, const std::filesystem::path& path) const;
-  nlohmann::json numbers(const screen::Frame& picture, const Scene& loaded, const gl::Context& context,
-                         gl::PassTimer& timer, int times) const;
+  nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
+                         const gl::Context& context, gl::PassTimer& timer, int times) const;
 };
 
 void warn_of_bad_pixels(const Image& picture) {
@@ -125,14 +127,16 @@ void RenderCommand::render_animation(screen::Frame& picture, const SceneSource& 
   }
 }
 
-nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const Scene& loaded, const gl::Context& context,
-                                      gl::PassTimer& timer, int times) const {
+nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen::FrameOptions& options,
+                                      const Scene& loaded, const gl::Context& context, gl::PassTimer& timer,
+                                      int times) const {
   auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, times, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},
-                           {"vpls", frame.vpls},
                            {"set", frame.parameters}};
+  for (const screen::Parameter* p : screen::parameters())
+    numbers["parameters"][p->name] = screen::value_text(*p, options.settings);
   if (!animate.empty()) numbers["parameters"]["animate"] = animate;
   return numbers;
 }
@@ -149,13 +153,10 @@ int RenderCommand::run() const {
   scene.camera(loaded);  // says so now if there is none
   const gl::Context context(device);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
-  if (!quiet && (options.gi == screen::GiMode::volume || options.gi == screen::GiMode::hybrid) &&
-      loaded.triangle_count() > 0) {
-    const bool on_gpu = screen::runs_on_gpu(options.backend);
-    fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
-               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);
-  }
   screen::Frame picture(loaded, options);
+  for (const std::string& line : picture.announcements()) {
+    if (!quiet) fmt::print("{}\n", line);
+  }
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
   if (animate.empty()) {
@@ -163,7 +164,7 @@ int RenderCommand::run() const {
   } else {
     render_animation(picture, source, loaded, times, box, timer);
   }
-  const auto figures = numbers(picture, loaded, context, timer, animate.empty() ? frames : times.count);
+  const auto figures = numbers(picture, options, loaded, context, timer, animate.empty() ? frames : times.count);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
   }

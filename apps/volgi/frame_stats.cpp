@@ -2,7 +2,35 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "screen/frame/registry.h"
+
 namespace volgi::app {
+
+namespace {
+
+/// Whole numbers without a point.
+nlohmann::json json_of(double value) {
+  return std::floor(value) == value ? nlohmann::json(std::int64_t(value)) : nlohmann::json(value);
+}
+nlohmann::json json_of(const std::vector<double>& values) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const double v : values) all.push_back(json_of(v));
+  return all;
+}
+nlohmann::json json_of(bool value) { return value; }
+nlohmann::json json_of(const std::string& value) { return value; }
+
+/// "a.b": member b of a.
+void set_figure(nlohmann::json& stats, const screen::FrameReport::Figure& figure) {
+  std::string pointer = "/" + figure.name;
+  std::replace(pointer.begin(), pointer.end(), '.', '/');
+  std::visit([&](const auto& value) { stats[nlohmann::json::json_pointer(pointer)] = json_of(value); }, figure.value);
+}
+
+}  // namespace
 
 nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size,
                            const gl::Context& context, gl::PassTimer& timer, int frames,
@@ -11,8 +39,7 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
   for (const auto& pass : timer.medians())
     passes.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
   auto frame = timer.frame_time();
-  auto rgb = [](glm::vec3 v) { return nlohmann::json::array({v.x, v.y, v.z}); };
-  return {
+  nlohmann::json stats = {
       {"scene", scene},
       {"mode", mode},
       {"size", {size.x, size.y}},
@@ -22,23 +49,20 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"frames", frames},
       {"frame_ms", {{"min", frame.min_ms}, {"median", frame.median_ms}, {"max", frame.max_ms}}},
       {"passes", passes},
-      {"grid", {report.volume.grid.x, report.volume.grid.y, report.volume.grid.z}},
-      {"iterations", report.volume.bounces.passes},
-      {"orders", report.volume.bounces.orders},
-      {"converged", report.volume.bounces.converged},
-      {"sides", report.volume.sides},
-      {"vpls", report.virtual_lights},
-      {"negative_lights", report.negative_lights},
-      {"coarse_share", report.coarse_share},
-      {"vals", report.area_lights},
-      {"backend", report.volume.on_gpu ? "gpu" : "cpu"},
       {"memory_bytes", report.memory_bytes},
-      {"power_W",
-       {{"injected", rgb(report.volume.injected)},
-        {"sent", rgb(report.volume.bounces.sent)},
-        {"left", rgb(report.volume.bounces.left)},
-        {"lost", rgb(report.volume.lost)}}},
   };
+  screen::FrameReport nothing;
+  for (const screen::StageType* stage : screen::stage_types()) {
+    if (stage->report_nothing != nullptr) stage->report_nothing(nothing);
+  }
+  for (const auto& figure : nothing.figures()) set_figure(stats, figure);
+  for (const auto& figure : report.figures()) set_figure(stats, figure);
+  std::string summary;
+  for (const auto& figure : report.figures()) {
+    if (!figure.words.empty()) summary += figure.words + ", ";
+  }
+  stats["summary"] = summary + fmt::format("{:.1f} MiB in all", double(report.memory_bytes) / 1048576.0);
+  return stats;
 }
 
 std::string pass_table(const nlohmann::json& stats) {
@@ -51,20 +75,7 @@ std::string pass_table(const nlohmann::json& stats) {
   }
   text += fmt::format("  {:<56} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
                       stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum);
-  if (stats["grid"][0] != 0) {
-    text += fmt::format(
-        "  grid {}x{}x{}, {} sides, {} orders in {} passes over the volume, volume on the {}, {:.1f} MiB in all\n",
-        stats["grid"][0].get<int>(), stats["grid"][1].get<int>(), stats["grid"][2].get<int>(),
-        stats["sides"].get<unsigned>(), stats["orders"].get<int>(), stats["iterations"].get<int>(),
-        stats["backend"] == "gpu" ? "GPU" : "CPU", stats["memory_bytes"].get<double>() / 1048576.0);
-  }
-  if (stats["vpls"] != 0) {
-    text += fmt::format("  {} virtual lights", stats["vpls"].get<int>());
-    if (stats["negative_lights"] != 0) text += fmt::format(", {} negative", stats["negative_lights"].get<int>());
-    text += fmt::format(", {:.1f} % of the pixels from coarse ones, {:.1f} MiB in all\n",
-                        100.0 * stats["coarse_share"].get<double>(), stats["memory_bytes"].get<double>() / 1048576.0);
-  }
-  return text;
+  return text + fmt::format("  {}\n", stats["summary"].get<std::string>());
 }
 
 }  // namespace volgi::app

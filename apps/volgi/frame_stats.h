@@ -1,10 +1,11 @@
 #pragma once
+#include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
-#include "screen/frame/frame.h"
+#include "screen/frame/frame_report.h"
 
 namespace volgi::app {
 

@@ -1,8 +1,9 @@
 #include "screen/base/compose.h"
 
 #include <array>
-#include <cassert>
+#include <string>
 
+#include "core/error.h"
 #include "core/gl/raster_state.h"
 
 namespace volgi::screen {
@@ -14,19 +15,18 @@ Compose::Compose(glm::ivec2 size)
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }
 
-void Compose::run(const GBuffer& gbuffer, const RadianceLayers& layers, LightPart part, gl::PassTimer& timer) {
+void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
-  std::vector<const gl::Texture*> shown;
-  if (part != LightPart::indirect) shown.insert(shown.end(), layers.direct.begin(), layers.direct.end());
-  if (part != LightPart::direct) shown.insert(shown.end(), layers.indirect.begin(), layers.indirect.end());
-  assert(shown.size() <= 8);
-
+  if (layers.size() > MAX_LAYERS) {
+    throw Error(ExitCode::over_limit, "a picture of " + std::to_string(layers.size()) + " layers: at most " +
+                                          std::to_string(MAX_LAYERS) + " can be summed; use a recipe of fewer stages");
+  }
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
   gbuffer.position().bind(0);
-  for (size_t i = 0; i < shown.size(); ++i) shown[i]->bind(GLuint(1 + i));
+  for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(1 + i));
   program_.use();
-  program_.set("layer_count", int(shown.size()));
+  program_.set("layer_count", int(layers.size()));
   gl::draw_fullscreen_triangle();
 }
 

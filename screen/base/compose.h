@@ -1,6 +1,5 @@
 #pragma once
 #include <span>
-#include <vector>
 
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
@@ -9,24 +8,18 @@
 
 namespace volgi::screen {
 
-/// What of the light a picture shows (--light). `direct`: straight from any emitter to the surface, plus emission seen
-/// by the camera; `indirect`: after at least one reflection before the visible surface.
-enum class LightPart { full, direct, indirect };
-
-/// Radiance layers (RGBA32F, size of the G-buffer). The caller sees to it that each light path is in one layer only.
-struct RadianceLayers {
-  std::vector<const gl::Texture*> direct;
-  std::vector<const gl::Texture*> indirect;
-};
-
-/// Pass "screen/base/compose": the sum of the layers that `part` asks for, at most 8; black in the background.
+/// Pass "screen/base/compose": the sum of radiance layers, in their order; black in the background.
 class Compose {
  public:
   static constexpr const char* name = "screen/base/compose";
   explicit Compose(glm::ivec2 size);
-  void run(const GBuffer& gbuffer, const RadianceLayers& layers, LightPart part, gl::PassTimer& timer);
+  static constexpr size_t MAX_LAYERS = 15;  // and the positions: as many textures as GL promises
+  /// @param layers  RGBA32F of the G-buffer's size; each light path in one of them only, which the caller sees to.
+  /// @throws Error(over_limit) above MAX_LAYERS.
+  void run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, gl::PassTimer& timer);
 
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
+  size_t bytes() const { return 16 * size_t(radiance_.size().x) * size_t(radiance_.size().y); }
 
  private:
   gl::Texture radiance_;

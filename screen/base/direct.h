@@ -16,6 +16,7 @@ class Direct {
   void run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
 
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
+  size_t bytes() const { return 16 * size_t(radiance_.size().x) * size_t(radiance_.size().y); }
 
  private:
   gl::Texture radiance_;

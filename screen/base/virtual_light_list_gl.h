@@ -8,6 +8,7 @@ namespace volgi::screen {
 
 /// Virtual lights on the GPU, as passes take them. Some may have no flux: those stand for samples that met nothing.
 struct VirtualLightListGl {
+  static constexpr const char* product_name = "virtual lights";
   gl::Buffer buffer;          // shared::VirtualLight, padded_count() of them; zeros behind the last
   std::vector<int> of_light;  // reflected ones, of each punctual light in its order
   int reflected = 0;          // lights [0, reflected): the sum of of_light

@@ -17,8 +17,6 @@
 namespace volgi::test {
 namespace {
 
-using screen::GiMode;
-
 /// A frame that lives on while its scene changes.
 class Followed {
  public:
@@ -48,20 +46,20 @@ bool same_bytes(const Image& a, const Image& b) {
 
 class Animation : public GlTest {
  protected:
-  static screen::FrameOptions options(GiMode gi, Scheme scheme = Scheme::ordinates) {
+  static screen::FrameOptions options(Gi gi, Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o;
-    o.gi = gi;
+    o.recipe = gi;
     o.size = {40, 40};
     o.backend = tested_backend();
-    o.volume.grid_cells = 12;
-    o.volume.scheme.scheme = scheme;
-    o.volume.scheme.directions = 24;
-    o.shadow_resolution = {128, 64, 128};
-    o.virtual_lights.count = 64;
-    o.choose_one_of = 4;
-    o.negative_lights.count = 32;
-    o.area_lights.count = 8;
-    o.area_light_map = 64;
+    o.of<VolumeOptions>().grid_cells = 12;
+    o.of<VolumeOptions>().scheme.scheme = scheme;
+    o.of<VolumeOptions>().scheme.directions = 24;
+    o.of<screen::ReflectiveShadowMap::Resolution>() = {128, 64, 128};
+    o.of<screen::VirtualLightOptions>().count = 64;
+    o.of<screen::ResampleOptions>().candidates = 4;
+    o.of<screen::NegativeLightOptions>().count = 32;
+    o.of<screen::VirtualAreaLightOptions>().count = 8;
+    o.of<screen::AreaMapOptions>().texels = 64;
     return o;
   }
 
@@ -70,15 +68,15 @@ class Animation : public GlTest {
     screen::FrameOptions options;
   };
   static std::vector<Technique> techniques() {
-    return {{"none", options(GiMode::none)},
-            {"vpl", options(GiMode::vpl)},
-            {"negative", options(GiMode::negative)},
-            {"val", options(GiMode::val)},
-            {"hybrid", options(GiMode::hybrid)},
-            {"hybrid, conservative", options(GiMode::hybrid, Scheme::conservative)},
-            {"volume, ordinates", options(GiMode::volume)},
-            {"volume, conservative", options(GiMode::volume, Scheme::conservative)},
-            {"volume, gaitatzes2010", options(GiMode::volume, Scheme::gaitatzes2010)}};
+    return {{"none", options(Gi("none"))},
+            {"vpl", options(Gi("vpl"))},
+            {"negative", options(Gi("negative"))},
+            {"val", options(Gi("val"))},
+            {"hybrid", options(Gi("hybrid"))},
+            {"hybrid, conservative", options(Gi("hybrid"), Scheme::conservative)},
+            {"volume, ordinates", options(Gi("volume"))},
+            {"volume, conservative", options(Gi("volume"), Scheme::conservative)},
+            {"volume, gaitatzes2010", options(Gi("volume"), Scheme::gaitatzes2010)}};
   }
 
   static Image fresh(const Scene& scene, const screen::FrameOptions& o) {
@@ -112,9 +110,9 @@ TEST_F(Animation, FindsRoomForWhatGrows) {
   Scene small = full;
   for (glm::vec3& p : small.meshes.back().positions) p *= 0.02f;
   const auto sides = [](const Scene& scene) {
-    Followed followed(context(), scene, options(GiMode::volume));
+    Followed followed(context(), scene, options(Gi("volume")));
     followed.render();
-    return double(followed.report().volume.sides);
+    return double(followed.report().of<screen::VolumeReport>().sides);
   };
   EXPECT_GT(sides(full), 1.25 * sides(small));
   expect_followed(small, [](Scene& s) { move_metaballs(s, 0.5); }, {"negative", "volume, ordinates"});
@@ -209,7 +207,7 @@ TEST_F(Animation, AnimatedNodesMoveInThePictureWithTheirShadows) {
   for (const double time_s : {0.0, 1.0, 2.0}) box.add(source.bounds(time_s));
   Scene scene = source.at(0.0, box);
   light_plate(scene);
-  Followed followed(context(), scene, options(GiMode::none));
+  Followed followed(context(), scene, options(Gi("none")));
   const Image first = followed.render();
   source.move(scene, 2.0, box);
   light_plate(scene);
@@ -233,7 +231,7 @@ TEST_F(Animation, FramesAreThePicturesOfTheirTimes) {
   const std::filesystem::path still_bounds = writer.save_glb(folder / "plate.glb");
   writer.root["nodes"][0]["scale"] = {0.5, 1.0, 0.5};  // the plate leaves the floor
   const std::filesystem::path moving_bounds = writer.save_glb(folder / "leaves.glb");
-  const screen::FrameOptions o = options(GiMode::volume);
+  const screen::FrameOptions o = options(Gi("volume"));
   for (const bool still : {true, false}) {
     const SceneSource source(still ? still_bounds : moving_bounds);
     WorldBox box;
@@ -242,11 +240,11 @@ TEST_F(Animation, FramesAreThePicturesOfTheirTimes) {
     light_plate(scene);
     Followed followed(context(), scene, o);
     const Image first = followed.render();
-    const glm::ivec3 grid = followed.report().volume.grid;
+    const glm::ivec3 grid = followed.report().of<screen::VolumeReport>().grid;
     source.move(scene, 0.5, box);
     light_plate(scene);
     const Image moved = followed.follow();
-    EXPECT_EQ(followed.report().volume.grid, grid);
+    EXPECT_EQ(followed.report().of<screen::VolumeReport>().grid, grid);
     EXPECT_FALSE(same_bytes(moved, first));
     Scene alone = load_scene(still ? still_bounds : moving_bounds, 0.5);
     light_plate(alone);

@@ -15,8 +15,6 @@
 namespace volgi::test {
 namespace {
 
-using screen::GiMode;
-
 constexpr glm::ivec2 kSize{64, 64};
 constexpr glm::vec3 kCorner{-1.0f};
 
@@ -37,15 +35,15 @@ float maximum(const Image& image) {
 
 class Corner : public GlTest {
  protected:
-  static screen::FrameOptions options(GiMode gi, int count) {
+  static screen::FrameOptions options(Gi gi, int count) {
     screen::FrameOptions o = picture_options(gi, kSize, screen::LightPart::indirect);
-    o.virtual_lights.count = count;
+    o.of<screen::VirtualLightOptions>().count = count;
     return o;
   }
 
   /// `distance_m` in front of the virtual light nearest to the corner, of those chosen for a camera that sees it.
   static Camera close_to_a_light(const Scene& scene, int count, float distance_m, glm::vec3 target) {
-    screen::Frame frame(scene, options(GiMode::vpl, count));
+    screen::Frame frame(scene, options(Gi("vpl"), count));
     gl::PassTimer timer(context().software(), false);
     frame.render(look_at_camera(glm::vec3(0.3f), kCorner, 1.0f, scene.bounds_min, scene.bounds_max), timer);
     const VirtualLightList list = frame.virtual_lights();
@@ -76,14 +74,12 @@ TEST_F(Corner, NoPixelIsTwiceAsBrightAsTheBrightest) {
     const Camera camera = close_to_a_light(scene, count, distance_m, target);
     const float first_bounce = brightest_by_paths(scene, camera, 1);
     const float all_bounces = brightest_by_paths(scene, camera, std::nullopt);
-    for (const auto& [mode, name] : {std::pair(GiMode::vpl, "vpl"),
-                                     {GiMode::negative, "negative"},
-                                     {GiMode::val, "val"},
-                                     {GiMode::hybrid, "hybrid"}}) {
-      if (tested_backend() == screen::Backend::cpu && mode != GiMode::hybrid) continue;  // no volume: the same passes
+    for (const auto& [mode, name] :
+         {std::pair(Gi("vpl"), "vpl"), {Gi("negative"), "negative"}, {Gi("val"), "val"}, {Gi("hybrid"), "hybrid"}}) {
+      if (tested_backend() == screen::Backend::cpu && mode != Gi("hybrid")) continue;  // no volume: the same passes
       const Image image = render(context(), scene, camera, options(mode, count)).image;
       EXPECT_GT(mean_light(image), 0.0);
-      const float ratio = maximum(image) / (mode == GiMode::hybrid ? all_bounces : first_bounce);
+      const float ratio = maximum(image) / (mode == Gi("hybrid") ? all_bounces : first_bounce);
       EXPECT_LT(ratio, 2.0f) << name << ", " << count << " lights, " << distance_m << " m";
       RecordProperty(std::string(name) + "_" + std::to_string(count) + "_" + std::to_string(int(1000.0f * distance_m)),
                      std::to_string(ratio));

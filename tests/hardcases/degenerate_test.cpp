@@ -21,7 +21,7 @@ class Degenerate : public GlTest {
   static screen::FrameOptions options() {
     screen::FrameOptions o;
     o.size = {64, 64};
-    o.volume.grid_cells = 12;
+    o.of<VolumeOptions>().grid_cells = 12;
     return o;
   }
   static Image framed(const Scene& scene, const screen::FrameOptions& o = options()) {
@@ -51,7 +51,7 @@ TEST_F(Degenerate, OneTriangle) {
     mesh.triangles.resize(1);
     scene.lights.push_back(point_light({0.0f, 0.5f, 2.0f}, glm::vec3(3.0f)));
     screen::FrameOptions o = options();
-    o.volume.scheme.scheme = scheme;
+    o.of<VolumeOptions>().scheme.scheme = scheme;
     EXPECT_GT(mean_light(framed(scene, o)), 0.0);
     o.light = screen::LightPart::indirect;
     EXPECT_LT(mean_light(framed(scene, o)), 1e-3);  // a plane does not light itself
@@ -111,10 +111,10 @@ TEST_F(Degenerate, SheetOnAWall) {
 TEST_F(Degenerate, UnknownDirectionsAndGrids) {
   const Scene scene = load_scene(kData / "cornell.glb");
   screen::FrameOptions o = options();
-  o.volume.scheme.directions = 10;
+  o.of<VolumeOptions>().scheme.directions = 10;
   EXPECT_THROW(screen::Frame(scene, o), Error);
   o = options();
-  o.volume.grid_cells = 0;
+  o.of<VolumeOptions>().grid_cells = 0;
   EXPECT_THROW(screen::Frame(scene, o), Error);
 }
 
@@ -126,7 +126,7 @@ TEST_F(Degenerate, EmissiveSceneAgainstPaths) {
   tracer.samples_per_pixel = 64;
   const double exact = mean_light(path_trace(scene, scene.cameras.at(0), tracer).color);
   screen::FrameOptions o = options();
-  o.volume.grid_cells = 24;
+  o.of<VolumeOptions>().grid_cells = 24;
   const double energy = mean_light(render(context(), scene, scene.cameras.at(0), o).image) / exact;
   EXPECT_NEAR(energy, 1.0, 0.25);
   RecordProperty("energy", std::to_string(energy));

@@ -21,20 +21,19 @@ namespace volgi::test {
 namespace {
 
 using screen::FrameOptions;
-using screen::GiMode;
 using screen::LightPart;
 
-constexpr GiMode kModes[] = {GiMode::vpl, GiMode::negative};
-std::string name_of(GiMode mode) { return mode == GiMode::vpl ? "vpl" : "negative"; }
+constexpr Gi kModes[] = {Gi("vpl"), Gi("negative")};
+std::string name_of(Gi mode) { return mode == Gi("vpl") ? "vpl" : "negative"; }
 
 Scene load(const std::string& name) { return load_scene(source_dir() / "data" / (name + ".glb")); }
 
-FrameOptions options(GiMode mode, int size = 96, int count = 256) {
+FrameOptions options(Gi mode, int size = 96, int count = 256) {
   FrameOptions o;
-  o.gi = mode;
+  o.recipe = mode;
   o.size = {size, size};
-  o.virtual_lights.count = count;
-  o.volume.grid_cells = 24;
+  o.of<screen::VirtualLightOptions>().count = count;
+  o.of<VolumeOptions>().grid_cells = 24;
   return o;
 }
 
@@ -81,11 +80,11 @@ TEST_F(FirstBounce, SumOfLights) {
   Scene scene = load("cornell");
   const Light a = scene.lights.at(0);
   const Light b = point_light({0.3f, -0.2f, 0.4f}, {0.5f, 1.0f, 2.0f});
-  for (const GiMode mode : kModes) {
+  for (const Gi mode : kModes) {
     for (const int stride : {1, 2}) {
       FrameOptions o = options(mode, 64);
-      o.virtual_lights.per_light = 128;
-      o.gather.stride = stride;
+      o.of<screen::VirtualLightOptions>().per_light = 128;
+      o.of<screen::GatherOptions>().stride = stride;
       const auto lit_by = [&](std::vector<Light> lights) {
         scene.lights = std::move(lights);
         return picture(scene, o);
@@ -94,7 +93,7 @@ TEST_F(FirstBounce, SumOfLights) {
       record("sum_" + name_of(mode) + "_stride_" + std::to_string(stride), deviation);
       // 0.1 is asked for. Which pixels are gathered again depends on how much light there is (0.20 measured); negative
       // lights are chosen for all lights together, and what they take ends at zero.
-      const double limit = mode == GiMode::negative ? 2.0 : stride == 1 ? 0.1 : 0.25;
+      const double limit = mode == Gi("negative") ? 2.0 : stride == 1 ? 0.1 : 0.25;
       EXPECT_LT(deviation, limit) << name_of(mode) << ' ' << stride;
     }
   }
@@ -103,10 +102,10 @@ TEST_F(FirstBounce, SumOfLights) {
 TEST_F(FirstBounce, NothingNegativeNorInfinite) {
   for (const char* name : {"cornell", "room", "occluder", "emissive", "thin_wall", "corridor"}) {
     const Scene scene = load(name);
-    for (const GiMode mode : kModes) {
-      for (const int one_of : {1, FrameOptions{}.choose_one_of}) {
+    for (const Gi mode : kModes) {
+      for (const int one_of : {1, screen::ResampleOptions{}.candidates}) {
         FrameOptions o = options(mode, 48);
-        o.choose_one_of = one_of;
+        o.of<screen::ResampleOptions>().candidates = one_of;
         EXPECT_GT(mean_light(picture(scene, o)), 0.0) << name;
       }
     }
@@ -116,7 +115,7 @@ TEST_F(FirstBounce, NothingNegativeNorInfinite) {
 TEST_F(FirstBounce, Scale) {
   for (const char* name : {"cornell", "emissive", "room"}) {
     const Scene scene = load(name);
-    for (const GiMode mode : kModes) {
+    for (const Gi mode : kModes) {
       const Image ref = picture(scene, options(mode, 64));
       for (const float s : {1e-3f, 1e3f}) {
         const double deviation = rmse_percent(picture(scaled(scene, s), options(mode, 64)), ref);
@@ -131,7 +130,7 @@ TEST_F(FirstBounce, Offset) {
   for (const char* name : {"cornell", "emissive"}) {
     const Scene here = load(name);
     const Scene there = load_moved(source_dir() / "data" / (std::string(name) + ".glb"), 1e5);
-    for (const GiMode mode : kModes) {
+    for (const Gi mode : kModes) {
       const double deviation = rmse_percent(picture(there, options(mode, 64)), picture(here, options(mode, 64)));
       record(std::string("offset_") + name + "_" + name_of(mode), deviation);
       EXPECT_LT(deviation, 0.1) << name << ' ' << name_of(mode);
@@ -145,7 +144,7 @@ TEST_F(FirstBounce, Offset) {
 TEST_F(FirstBounce, Range) {
   for (const char* name : {"cornell", "emissive"}) {
     const Scene scene = load(name);
-    for (const GiMode mode : kModes) {
+    for (const Gi mode : kModes) {
       FrameOptions o = options(mode, 48);
       const Image ref = picture(scene, o);
       for (const float factor : {0x1p-20f, 0x1p-10f, 0x1p13f, 0x1p30f}) {
@@ -155,11 +154,11 @@ TEST_F(FirstBounce, Range) {
       for (const float factor : {1e-6f, 1e-3f, 1e4f, 1e9f}) {
         const double rmse = rmse_percent(picture(brighter(scene, factor), o), ref, double(factor));
         record(std::string("range_") + name + "_" + name_of(mode) + "_" + std::to_string(std::log10(factor)), rmse);
-        EXPECT_LT(rmse, mode == GiMode::vpl ? 0.1 : 1.0) << name << ' ' << name_of(mode) << " x " << factor;
+        EXPECT_LT(rmse, mode == Gi("vpl") ? 0.1 : 1.0) << name << ' ' << name_of(mode) << " x " << factor;
       }
     }
-    FrameOptions o = options(GiMode::vpl, 48);
-    o.choose_one_of = 1;
+    FrameOptions o = options(Gi("vpl"), 48);
+    o.of<screen::ResampleOptions>().candidates = 1;
     const Image ref = picture(scene, o);
     for (const float factor : {1e-6f, 1e-3f, 1e4f, 1e9f}) {
       const double worst = worst_deviation(picture(brighter(scene, factor), o), ref, double(factor));
@@ -170,7 +169,7 @@ TEST_F(FirstBounce, Range) {
 
 TEST_F(FirstBounce, SameBytes) {
   const Scene scene = load("room");
-  for (const GiMode mode : kModes) {
+  for (const Gi mode : kModes) {
     const Image once = picture(scene, options(mode));
     EXPECT_TRUE(picture(scene, options(mode)).pixels == once.pixels) << name_of(mode);
     for (const size_t threads : {1, 2}) {
@@ -187,8 +186,8 @@ TEST_F(FirstBounce, VirtualLightsAgainstTheReferenceGather) {
     const Scene scene = load(name);
     const bool emits = scene.lights.empty();
     for (const int stride : {1, 2}) {
-      FrameOptions o = options(GiMode::vpl, 192, 1024);
-      o.gather.stride = stride;
+      FrameOptions o = options(Gi("vpl"), 192, 1024);
+      o.of<screen::GatherOptions>().stride = stride;
       o.light = emits ? LightPart::direct : LightPart::indirect;
       const Lit frame = lit(scene, scene.cameras.at(0), o);
       VirtualLightGatherOptions none;
@@ -206,7 +205,7 @@ TEST_F(FirstBounce, VirtualLightsAgainstTheReferenceGather) {
       const std::string key = std::string("gather_") + name + (stride == 1 ? "_stride_1" : "_defaults");
       record(key, error);
       record(key + "_with_edges", rmse_percent(frame.image, reference.color));
-      record(key + "_coarse_share", frame.report.coarse_share);
+      record(key + "_coarse_share", frame.report.number("coarse_share"));
       EXPECT_LT(error, stride == 1 ? 0.1 : 1.0) << key;
     }
   }
@@ -216,12 +215,12 @@ TEST_F(FirstBounce, VirtualLightsAgainstTheReferenceGather) {
 TEST_F(FirstBounce, ConvexRoomAgainstPaths) {
   const Scene scene = load("convex_box");
   const ReferencePicture reference = first_bounce(scene, 192, 64);
-  for (const int one_of : {1, FrameOptions{}.choose_one_of}) {
+  for (const int one_of : {1, screen::ResampleOptions{}.candidates}) {
     double error[2] = {};
     for (const int more : {0, 1}) {
-      FrameOptions o = options(GiMode::vpl, 192, more == 0 ? 1024 : 4096);
+      FrameOptions o = options(Gi("vpl"), 192, more == 0 ? 1024 : 4096);
       o.light = LightPart::indirect;
-      o.choose_one_of = one_of;
+      o.of<screen::ResampleOptions>().candidates = one_of;
       const auto relative = against(reference, picture(scene, o)).relative.value();
       error[more] = relative.rmse_pct_denoised.value();
       record("convex_one_of_" + std::to_string(one_of) + (more == 0 ? "_1024" : "_4096"), error[more]);
@@ -240,12 +239,12 @@ TEST_F(FirstBounce, NegativeLightsTakeErrorAway) {
     const Scene scene = load(name);
     const ReferencePicture reference = first_bounce(scene, 96, 128);
     double error[2] = {};
-    for (const GiMode mode : kModes) {
+    for (const Gi mode : kModes) {
       FrameOptions o = options(mode, 96, 1024);
       o.light = LightPart::indirect;
-      o.volume.grid_cells = FrameOptions{}.volume.grid_cells;
+      o.of<VolumeOptions>().grid_cells = VolumeOptions{}.grid_cells;
       const auto relative = against(reference, picture(scene, o)).relative.value();
-      error[mode == GiMode::negative] = relative.rmse_pct_denoised.value();
+      error[mode == Gi("negative")] = relative.rmse_pct_denoised.value();
       record(std::string("paths_") + name + "_" + name_of(mode), relative.rmse_pct_denoised.value());
       record(std::string("paths_") + name + "_" + name_of(mode) + "_energy", relative.ratio);
     }
@@ -258,7 +257,7 @@ TEST_F(FirstBounce, DarkRoomBehindAThinWall) {
   const Scene scene = load("thin_wall");
   const ReferencePicture reference = first_bounce(scene, 96, 2);
   double share[2] = {};
-  for (const GiMode mode : kModes) {
+  for (const Gi mode : kModes) {
     const Image image = picture(scene, options(mode, 96, 1024));
     double dark = 0.0, lit_room = 0.0;
     for (size_t i = 0; i < image.pixels.size(); ++i) {
@@ -266,7 +265,7 @@ TEST_F(FirstBounce, DarkRoomBehindAThinWall) {
       if (reference.position.pixels[i].x > 0.011f) dark += value;
       if (reference.position.pixels[i].x < -0.011f) lit_room += value;
     }
-    share[mode == GiMode::negative] = dark / lit_room;
+    share[mode == Gi("negative")] = dark / lit_room;
     record("thin_wall_" + name_of(mode) + "_percent", 100.0 * dark / lit_room);
   }
   EXPECT_LT(share[1], 0.3 * share[0]);
@@ -292,7 +291,7 @@ struct Flicker {
 // A light that moves by a thousandth of the scene: the picture flickers no more than the same lights with exact
 // visibility would make it.
 TEST_F(FirstBounce, Flicker) {
-  constexpr GiMode kFlickering[] = {GiMode::vpl, GiMode::negative, GiMode::val, GiMode::hybrid};
+  constexpr Gi kFlickering[] = {Gi("vpl"), Gi("negative"), Gi("val"), Gi("hybrid")};
   Scene scene = load("cornell");
   const glm::vec3 step = 1e-3f * glm::distance(scene.bounds_min, scene.bounds_max) * glm::vec3(1, 0, 0);
   const VirtualLightTracer tracer(scene);
@@ -300,7 +299,7 @@ TEST_F(FirstBounce, Flicker) {
   exact.size = {64, 64};
   exact.light = PathTracerOptions::Light::indirect;
   std::vector<std::unique_ptr<screen::Frame>> frames;
-  for (const GiMode mode : kFlickering) {
+  for (const Gi mode : kFlickering) {
     FrameOptions o = options(mode, 64);
     o.light = LightPart::indirect;
     o.backend = tested_backend();
@@ -320,9 +319,9 @@ TEST_F(FirstBounce, Flicker) {
   }
   for (size_t m = 0; m < frames.size(); ++m) {
     const Flicker& same_lights = of_exact[m / 2];
-    const std::string name = kFlickering[m] == GiMode::val      ? "val"
-                             : kFlickering[m] == GiMode::hybrid ? "hybrid"
-                                                                : name_of(kFlickering[m]);
+    const std::string name = kFlickering[m] == Gi("val")      ? "val"
+                             : kFlickering[m] == Gi("hybrid") ? "hybrid"
+                                                              : name_of(kFlickering[m]);
     record("flicker_" + name + "_median", of_mode[m].median() / same_lights.median());
     record("flicker_" + name + "_largest", of_mode[m].largest() / same_lights.largest());
     EXPECT_LT(of_mode[m].median(), 1.5 * same_lights.median()) << name;
@@ -333,12 +332,12 @@ TEST_F(FirstBounce, Flicker) {
 // Cochran and Steele 2007, table 2: 0.1688 % of the range at 87.5 % of the pixels.
 TEST_F(FirstBounce, CoarsePixelsAgainstEveryPixel) {
   const Scene scene = load("cornell");
-  for (const GiMode mode : kModes) {
+  for (const Gi mode : kModes) {
     FrameOptions o = options(mode, 0, 256);
     o.size = {320, 240};
     o.light = LightPart::indirect;
     const Lit coarse = lit(scene, scene.cameras.at(0), o);
-    o.gather.stride = 1;
+    o.of<screen::GatherOptions>().stride = 1;
     const Image every = picture(scene, o);
     double squares = 0.0, range = 0.0;
     for (size_t i = 0; i < every.pixels.size(); ++i) {
@@ -348,9 +347,9 @@ TEST_F(FirstBounce, CoarsePixelsAgainstEveryPixel) {
     }
     const double rms = 100.0 * std::sqrt(squares / (3.0 * double(every.pixels.size()))) / range;
     record("coarse_" + name_of(mode) + "_rms", rms);
-    record("coarse_" + name_of(mode) + "_share", coarse.report.coarse_share);
+    record("coarse_" + name_of(mode) + "_share", coarse.report.number("coarse_share"));
     EXPECT_LT(rms, 0.2) << name_of(mode);
-    EXPECT_GE(coarse.report.coarse_share, 0.875f) << name_of(mode);
+    EXPECT_GE(coarse.report.number("coarse_share"), 0.875f) << name_of(mode);
   }
 }
 
@@ -366,12 +365,12 @@ TEST_F(FirstBounce, DegenerateScenes) {
   Scene dark = unlit;
   unlit.lights.clear();
   dark.lights[0].intensity = glm::vec3(0.0f);
-  for (const GiMode mode : kModes) {
+  for (const Gi mode : kModes) {
     for (const int method : {0, 1, 2}) {
-      if (mode == GiMode::vpl && method > 0) continue;
+      if (mode == Gi("vpl") && method > 0) continue;
       FrameOptions o = options(mode, 17, 64);
-      o.volume.grid_cells = 8;
-      o.negative_lights.method = screen::NegativeLightOptions::Method(method);
+      o.of<VolumeOptions>().grid_cells = 8;
+      o.of<screen::NegativeLightOptions>().method = screen::NegativeLightOptions::Method(method);
       const auto framed = [&](const Scene& scene) {
         return mean_light(lit(scene, framing_camera(scene.bounds_min, scene.bounds_max), o).image);
       };

@@ -23,11 +23,11 @@ class Furnace : public GlTest {
                                    scene.bounds_min, scene.bounds_max);
     screen::FrameOptions options;
     options.size = {64, 64};
-    options.volume.grid_cells = grid_cells;
-    options.volume.scheme.scheme = scheme;
+    options.of<VolumeOptions>().grid_cells = grid_cells;
+    options.of<VolumeOptions>().scheme.scheme = scheme;
     Rendered r = render(context(), scene, camera, options);
-    EXPECT_EQ(r.report.volume.lost, glm::vec3(0.0f));
-    EXPECT_NEAR(r.report.volume.injected.x, 24.0 * M_PI, 24.0 * M_PI * 1e-4);  // 24 m^2 of pi L_e
+    EXPECT_EQ(r.report.of<screen::VolumeReport>().lost, glm::vec3(0.0f));
+    EXPECT_NEAR(r.report.of<screen::VolumeReport>().injected.x, 24.0 * M_PI, 24.0 * M_PI * 1e-4);  // 24 m^2 of pi L_e
     double sum = 0.0;
     int count = 0;
     for (int y = 2; y < 62; ++y) {
@@ -51,8 +51,8 @@ class Furnace : public GlTest {
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
     screen::FrameOptions options;
     options.size = {24, 24};
-    options.volume.grid_cells = grid_cells;
-    options.volume.scheme.scheme = scheme;
+    options.of<VolumeOptions>().grid_cells = grid_cells;
+    options.of<VolumeOptions>().scheme.scheme = scheme;
     options.backend = tested_backend();
     screen::Frame frame(scene, options);
     gl::PassTimer timer(context().software(), false);

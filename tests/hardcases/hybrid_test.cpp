@@ -20,9 +20,9 @@ const fs::path kData = source_dir() / "data";
 
 class Hybrid : public GlTest {
  protected:
-  static screen::FrameOptions options(screen::GiMode gi, screen::LightPart light = screen::LightPart::indirect) {
+  static screen::FrameOptions options(Gi gi, screen::LightPart light = screen::LightPart::indirect) {
     screen::FrameOptions o;
-    o.gi = gi;
+    o.recipe = gi;
     o.light = light;
     o.size = {192, 192};
     return o;
@@ -50,8 +50,7 @@ bool same_bytes(const Image& a, const Image& b) {
 TEST_F(Hybrid, AgainstPathTracing) {
   for (const auto& [name, limit_pct] :
        {std::pair("cornell", 6.5), {"room", 9.0}, {"thin_wall", 9.0}, {"occluder", 3.0}}) {
-    const auto relative =
-        error(picture(name, options(screen::GiMode::hybrid)), std::string("references/") + name + ".exr");
+    const auto relative = error(picture(name, options(Gi("hybrid"))), std::string("references/") + name + ".exr");
     EXPECT_LT(relative.rmse_pct_denoised.value(), limit_pct) << name;
     EXPECT_NEAR(relative.ratio, 1.0, 0.05) << name;
   }
@@ -61,10 +60,10 @@ TEST_F(Hybrid, AgainstPathTracing) {
 // lights that reach to the well in its middle. Measured: 18.5 % on the CPU's volume, energy 0.951.
 TEST_F(Hybrid, AtriumAgainstPathTracing) {
   const bool on_cpu = tested_backend() == screen::Backend::cpu;
-  screen::FrameOptions o = options(screen::GiMode::hybrid);
-  o.volume.grid_cells = 64;
-  o.area_lights.count = 128;
-  o.near_zone = 32.0f;
+  screen::FrameOptions o = options(Gi("hybrid"));
+  o.of<VolumeOptions>().grid_cells = 64;
+  o.of<screen::VirtualAreaLightOptions>().count = 128;
+  o.of<screen::ResampleOptions>().near_zone = 32.0f;
   const Scene scene = load_scene(build_dir() / "data/atrium.glb");
   const auto atrium = error(render(context(), scene, scene.cameras.at(0), o).image, "references/atrium.exr");
   EXPECT_LT(atrium.rmse_pct_denoised.value(), on_cpu ? 20.0 : 23.0);
@@ -74,24 +73,24 @@ TEST_F(Hybrid, AtriumAgainstPathTracing) {
 }
 
 TEST_F(Hybrid, EmissionArrivesByVirtualLightsAndIsReflectedByTheVolume) {
-  const auto emissive = error(picture("emissive", options(screen::GiMode::hybrid)), "references/emissive.exr");
+  const auto emissive = error(picture("emissive", options(Gi("hybrid"))), "references/emissive.exr");
   EXPECT_LT(emissive.rmse_pct_denoised.value(), 10.0);
   EXPECT_NEAR(emissive.ratio, 1.0, 0.1);
 }
 
 TEST_F(Hybrid, OneBounceIsThatOfTheAreaLights) {
-  screen::FrameOptions one = options(screen::GiMode::hybrid);
-  one.volume.bounces = 1;
-  EXPECT_TRUE(same_bytes(picture("cornell", one), picture("cornell", options(screen::GiMode::val))));
+  screen::FrameOptions one = options(Gi("hybrid"));
+  one.bounces = 1;
+  EXPECT_TRUE(same_bytes(picture("cornell", one), picture("cornell", options(Gi("val")))));
 }
 
 TEST_F(Hybrid, BouncesAddUpToAllOfThem) {
-  screen::FrameOptions o = options(screen::GiMode::hybrid);
+  screen::FrameOptions o = options(Gi("hybrid"));
   const Image all = picture("cornell", o);
   double last = -1.0, whole = 0.0;
   for (const glm::vec3& p : all.pixels) whole += p.x + p.y + p.z;
   for (const int bounces : {1, 2, 4, 16}) {
-    o.volume.bounces = bounces;
+    o.bounces = bounces;
     double sum = 0.0;
     for (const glm::vec3& p : picture("cornell", o).pixels) sum += p.x + p.y + p.z;
     EXPECT_GT(sum, last) << bounces;
@@ -101,8 +100,8 @@ TEST_F(Hybrid, BouncesAddUpToAllOfThem) {
 }
 
 TEST_F(Hybrid, AreaLightsAgainstOneBounce) {
-  screen::FrameOptions o = options(screen::GiMode::val);
-  o.area_light_gather.interleave = 1;
+  screen::FrameOptions o = options(Gi("val"));
+  o.of<screen::AreaLightGatherOptions>().interleave = 1;
   const auto cornell = error(picture("cornell", o), "references/one_bounce/cornell.exr");
   EXPECT_LT(cornell.rmse_pct_denoised.value(), 11.0);
   EXPECT_NEAR(cornell.ratio, 1.0, 0.05);
@@ -115,9 +114,9 @@ TEST_F(Hybrid, AreaLightsAgainstOneBounce) {
 TEST_F(Hybrid, InterleavedIsEveryLightAtEveryPixel) {
   if (tested_backend() == screen::Backend::cpu) return;  // no volume in it: the same passes
   for (const std::string name : {"cornell", "room", "thin_wall", "occluder"}) {
-    screen::FrameOptions o = options(screen::GiMode::val);
+    screen::FrameOptions o = options(Gi("val"));
     const Image interleaved = picture(name.c_str(), o);
-    o.area_light_gather.interleave = 1;
+    o.of<screen::AreaLightGatherOptions>().interleave = 1;
     const ReferenceFile shown =
         read_reference(kData / "references" / (name + ".exr"), PathTracerOptions::Light::indirect);
     const Metrics m =
@@ -128,7 +127,7 @@ TEST_F(Hybrid, InterleavedIsEveryLightAtEveryPixel) {
 }
 
 TEST_F(Hybrid, ThinWallDarkRoomStaysDark) {
-  const Image image = picture("thin_wall", options(screen::GiMode::hybrid, screen::LightPart::full));
+  const Image image = picture("thin_wall", options(Gi("hybrid"), screen::LightPart::full));
   const ReferenceFile reference = read_reference(kData / "references/thin_wall.exr", PathTracerOptions::Light::full);
   double lit = 0.0, dark = 0.0;
   int lit_pixels = 0, dark_pixels = 0;
@@ -150,14 +149,14 @@ TEST_F(Hybrid, ThinWallDarkRoomStaysDark) {
 }
 
 TEST_F(Hybrid, SameBytesTwice) {
-  screen::FrameOptions o = options(screen::GiMode::hybrid, screen::LightPart::full);
+  screen::FrameOptions o = options(Gi("hybrid"), screen::LightPart::full);
   o.size = {96, 96};
   EXPECT_TRUE(same_bytes(picture("cornell", o), picture("cornell", o)));
 }
 
 TEST_F(Hybrid, PapersSchemesAreRefused) {
-  screen::FrameOptions o = options(screen::GiMode::hybrid);
-  o.volume.scheme.scheme = Scheme::lpv2009;
+  screen::FrameOptions o = options(Gi("hybrid"));
+  o.of<VolumeOptions>().scheme.scheme = Scheme::lpv2009;
   EXPECT_THROW(picture("cornell", o), Error);
 }
 

@@ -23,14 +23,14 @@ class InjectedFlux : public GlTest {
     for (int cells : {16, 32, 64}) {
       screen::FrameOptions options;
       options.size = {16, 16};
-      options.volume.grid_cells = cells;
-      options.volume.bounces = 1;
+      options.of<VolumeOptions>().grid_cells = cells;
+      options.bounces = 1;
       const Camera camera = framing_camera(scene.bounds_min, scene.bounds_max);
       const screen::FrameReport report = render(context(), scene, camera, options).report;
       if (!roofed) {
-        EXPECT_EQ(report.volume.lost, glm::vec3(0.0f)) << cells;
+        EXPECT_EQ(report.of<screen::VolumeReport>().lost, glm::vec3(0.0f)) << cells;
       }
-      const glm::vec3 counted = report.volume.injected + report.volume.lost;
+      const glm::vec3 counted = report.of<screen::VolumeReport>().injected + report.of<screen::VolumeReport>().lost;
       for (int band = 0; band < 3; ++band) {
         EXPECT_NEAR(counted[band], flux[band], 0.02f * flux[band]) << "grid " << cells << " band " << band;
       }

@@ -21,8 +21,8 @@ class Invariance : public GlTest {
   static screen::FrameOptions options(Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o;
     o.size = {64, 64};
-    o.volume.grid_cells = 12;
-    o.volume.scheme.scheme = scheme;
+    o.of<VolumeOptions>().grid_cells = 12;
+    o.of<VolumeOptions>().scheme.scheme = scheme;
     return o;
   }
 };
@@ -71,7 +71,7 @@ TEST_F(Invariance, SumOfLights) {
   for (auto [name, limit] : {std::pair("convex_box", 0.1), {"cornell", 0.5}}) {
     Scene scene = load_scene(kData / (std::string(name) + ".glb"));
     screen::FrameOptions o = options();
-    o.volume.bounces = 4;
+    o.bounces = 4;
     const Light a = scene.lights.at(0);
     const Light b = point_light({0.3f, -0.2f, 0.4f}, {0.5f, 1.0f, 2.0f});
     const auto lit_by = [&](std::vector<Light> lights) {

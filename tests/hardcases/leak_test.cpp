@@ -20,8 +20,8 @@ class Leak : public GlTest {
   static screen::FrameOptions options(int cells, float shift) {
     screen::FrameOptions o;
     o.size = kSize;
-    o.volume.grid_cells = cells;
-    o.volume.grid_shift_cells = glm::vec3(shift);
+    o.of<VolumeOptions>().grid_cells = cells;
+    o.of<VolumeOptions>().grid_shift_cells = glm::vec3(shift);
     return o;
   }
 
@@ -66,7 +66,7 @@ TEST_F(Leak, ThinWallConservative) {
   for (auto [cells, shift, limit] :
        {std::tuple(16, 0.0f, 0.005), {24, 0.0f, 0.005}, {16, 0.25f, 0.02}, {16, 0.5f, 0.02}}) {
     screen::FrameOptions o = options(cells, shift);
-    o.volume.scheme.scheme = Scheme::conservative;
+    o.of<VolumeOptions>().scheme.scheme = Scheme::conservative;
     expect_below(limit, o, name("conservative", cells, shift));
   }
 }
@@ -74,9 +74,9 @@ TEST_F(Leak, ThinWallConservative) {
 // On the GPU's volume it is the test thin_wall_128 (CMakeLists.txt).
 TEST_F(Leak, ThinWallAt128Cells) {
   for (auto [shift, limit] : {std::pair(0.0f, 0.005), {0.25f, 0.02}, {0.5f, 0.02}}) {
-    for (auto [gi, mode] : {std::pair(screen::GiMode::volume, "volume"), {screen::GiMode::hybrid, "hybrid"}}) {
+    for (auto [gi, mode] : {std::pair(Gi("volume"), "volume"), {Gi("hybrid"), "hybrid"}}) {
       screen::FrameOptions o = options(128, shift);
-      o.gi = gi;
+      o.recipe = gi;
       expect_below(limit, o, name(mode, 128, shift));
     }
   }
@@ -86,7 +86,7 @@ TEST_F(Leak, ThinWallAt128Cells) {
 TEST_F(Leak, ThinWallByAreaLights) {
   if (tested_backend() == screen::Backend::cpu) return;  // no volume: the same passes
   screen::FrameOptions o = options(16, 0.0f);
-  o.gi = screen::GiMode::val;
+  o.recipe = "val";
   expect_below(0.005, o, "val");
 }
 
@@ -98,8 +98,8 @@ TEST_F(Leak, ThinWallHybrid) {
                                      {32, 0.25f, 0.02},
                                      {32, 0.5f, 0.02}}) {
     screen::FrameOptions o = options(cells, shift);
-    o.gi = screen::GiMode::hybrid;
-    if (cells == 64) o.volume.scheme.directions = 24;
+    o.recipe = "hybrid";
+    if (cells == 64) o.of<VolumeOptions>().scheme.directions = 24;
     expect_below(limit, o, name("hybrid", cells, shift));
   }
 }

@@ -25,12 +25,12 @@ class Long : public GlTest {
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
     screen::FrameOptions o;
     o.size = {24, 24};
-    o.volume = volume;
-    o.volume.grid_cells = 12;
+    o.of<VolumeOptions>() = volume;
+    o.of<VolumeOptions>().grid_cells = 12;
     const Camera camera =
         look_at_camera({0.3f, 0.2f, 0.7f}, {-0.4f, -0.3f, -1.0f}, 1.2f, scene.bounds_min, scene.bounds_max);
     const Rendered r = render(context(), scene, camera, o);
-    return {double(r.report.volume.bounces.sent.x), mean_light(r.image) * (1.0 - double(albedo))};
+    return {double(r.report.of<screen::VolumeReport>().bounces.sent.x), mean_light(r.image) * (1.0 - double(albedo))};
   }
 };
 

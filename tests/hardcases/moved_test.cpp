@@ -18,7 +18,6 @@
 namespace volgi::test {
 namespace {
 
-using screen::GiMode;
 using screen::LightPart;
 
 std::filesystem::path file(const std::string& name) { return source_dir() / "data" / (name + ".glb"); }
@@ -48,26 +47,26 @@ Scene turned(const Scene& scene, int axis) {
 
 class Moved : public GlTest {
  protected:
-  static screen::FrameOptions options(GiMode gi, int cells, Scheme scheme = Scheme::ordinates) {
+  static screen::FrameOptions options(Gi gi, int cells, Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o = picture_options(gi, {64, 64});
-    o.volume.grid_cells = cells;
-    o.volume.scheme.scheme = scheme;
+    o.of<VolumeOptions>().grid_cells = cells;
+    o.of<VolumeOptions>().scheme.scheme = scheme;
     return o;
   }
   static Image picture(const Scene& scene, const screen::FrameOptions& o) {
     return render(context(), scene, scene.cameras.at(0), o).image;
   }
   /// Modes without a volume are the same passes on both backends. A GPU in software has time for small volumes.
-  static bool skipped(const char* scene, GiMode gi, Scheme scheme) {
-    if (tested_backend() == screen::Backend::cpu) return gi != GiMode::volume && gi != GiMode::hybrid;
-    return gi == GiMode::volume ? scheme == Scheme::conservative || scene == std::string("room")
-                                : gi == GiMode::hybrid && scene != std::string("cornell");
+  static bool skipped(const char* scene, Gi gi, Scheme scheme) {
+    if (tested_backend() == screen::Backend::cpu) return gi != Gi("volume") && gi != Gi("hybrid");
+    return gi == Gi("volume") ? scheme == Scheme::conservative || scene == std::string("room")
+                              : gi == Gi("hybrid") && scene != std::string("cornell");
   }
 };
 
 struct Case {
   const char* scene;
-  GiMode gi;
+  Gi gi;
   Scheme scheme;
   int cells;
   double limit_percent;
@@ -77,19 +76,19 @@ struct Case {
 // cells' faces until they are shifted, 4.0 %; room of 20 cells, as large as what lies in it, 17 % (`volume`) and 4.6 %
 // (`hybrid`). `conservative` has 18 % in room at 32.
 TEST_F(Moved, ShiftedGridsShowAsMuchLight) {
-  for (const Case& c : {Case{"cornell", GiMode::volume, Scheme::ordinates, 20, 3.0},
-                        {"cornell", GiMode::volume, Scheme::conservative, 16, 3.0},
-                        {"cornell", GiMode::hybrid, Scheme::ordinates, 20, 3.0},
-                        {"room", GiMode::volume, Scheme::ordinates, 32, 3.0},
-                        {"room", GiMode::hybrid, Scheme::ordinates, 32, 3.0},
-                        {"room", GiMode::volume, Scheme::conservative, 32, 20.0}}) {
+  for (const Case& c : {Case{"cornell", Gi("volume"), Scheme::ordinates, 20, 3.0},
+                        {"cornell", Gi("volume"), Scheme::conservative, 16, 3.0},
+                        {"cornell", Gi("hybrid"), Scheme::ordinates, 20, 3.0},
+                        {"room", Gi("volume"), Scheme::ordinates, 32, 3.0},
+                        {"room", Gi("hybrid"), Scheme::ordinates, 32, 3.0},
+                        {"room", Gi("volume"), Scheme::conservative, 32, 20.0}}) {
     if (skipped(c.scene, c.gi, c.scheme)) continue;
     const Scene scene = load_scene(file(c.scene));
     screen::FrameOptions o = options(c.gi, c.cells, c.scheme);
     o.light = LightPart::indirect;
     const double still = mean_light(picture(scene, o));
     for (float shift : {0.25f, 0.5f}) {
-      o.volume.grid_shift_cells = {shift, -shift, 0.5f * shift};
+      o.of<VolumeOptions>().grid_shift_cells = {shift, -shift, 0.5f * shift};
       EXPECT_NEAR(100.0 * mean_light(picture(scene, o)) / still, 100.0, c.limit_percent)
           << c.scene << " shifted by " << shift;
     }
@@ -100,12 +99,12 @@ TEST_F(Moved, ShiftedGridsShowAsMuchLight) {
 // of 21 cells, but 22 % of 32 cells, which are 0.2 m: there a tie moves a wall by a cell. Virtual lights are other
 // samples of the same surface once their lamp turns about its axis: measured 2.4, 7.1 and 5.4 %.
 TEST_F(Moved, TurnedScenesLookTheSame) {
-  for (const Case& c : {Case{"cornell", GiMode::volume, Scheme::ordinates, 16, 1.0},
-                        {"cornell", GiMode::volume, Scheme::conservative, 16, 1.0},
-                        {"room", GiMode::volume, Scheme::ordinates, 21, 2.2},
-                        {"cornell", GiMode::vpl, Scheme::ordinates, 16, 3.0},
-                        {"cornell", GiMode::val, Scheme::ordinates, 16, 8.0},
-                        {"cornell", GiMode::hybrid, Scheme::ordinates, 16, 6.5}}) {
+  for (const Case& c : {Case{"cornell", Gi("volume"), Scheme::ordinates, 16, 1.0},
+                        {"cornell", Gi("volume"), Scheme::conservative, 16, 1.0},
+                        {"room", Gi("volume"), Scheme::ordinates, 21, 2.2},
+                        {"cornell", Gi("vpl"), Scheme::ordinates, 16, 3.0},
+                        {"cornell", Gi("val"), Scheme::ordinates, 16, 8.0},
+                        {"cornell", Gi("hybrid"), Scheme::ordinates, 16, 6.5}}) {
     if (skipped(c.scene, c.gi, c.scheme)) continue;
     const Scene scene = load_scene(file(c.scene));
     screen::FrameOptions o = options(c.gi, c.cells, c.scheme);
@@ -144,7 +143,7 @@ TEST_F(Moved, SlightlyTurnedWalls) {
     size_t k = 0;
     for (float angle_deg : {0.0f, 3.0f, 6.0f, 10.0f, 25.0f}) {
       const Scene scene = turned(upright, rotation({0, 1, 0}, angle_deg));
-      screen::FrameOptions o = options(GiMode::volume, cells);
+      screen::FrameOptions o = options(Gi("volume"), cells);
       o.light = LightPart::indirect;
       const double error = rmse_percent(picture(scene, o), ref);
       EXPECT_LT(error, limits[k++]) << cells << " cells, " << angle_deg << " degrees";
@@ -158,7 +157,7 @@ TEST_F(Moved, SlightlyTurnedWalls) {
 TEST_F(Moved, ScaleOffsetAndRangeOfAreaLights) {
   for (const char* name : {"cornell", "emissive"}) {
     const Scene scene = load_scene(file(name));
-    for (GiMode gi : {GiMode::val, GiMode::hybrid}) {
+    for (Gi gi : {Gi("val"), Gi("hybrid")}) {
       if (skipped(name, gi, Scheme::ordinates)) continue;
       const screen::FrameOptions o = options(gi, 12);
       const Image ref = picture(scene, o);

@@ -33,7 +33,7 @@ class Pictures : public GlTest {
     screen::FrameOptions options;
     options.size = {192, 192};
     options.light = screen::LightPart::indirect;
-    options.volume.scheme.scheme = scheme;
+    options.of<VolumeOptions>().scheme.scheme = scheme;
     const Image test = render_file(kData / (name + ".glb"), options).image;
     const fs::path folder = kData / "reference/ref" / name;
     const Image direct = read_exr_rgb(folder / "direct.exr");
@@ -96,9 +96,9 @@ TEST_F(Pictures, ThinWallDarkRoom) {
                                      {32, 0.5f, 0.02}}) {
     screen::FrameOptions options;
     options.size = {192, 192};
-    options.volume.grid_cells = cells;
-    options.volume.grid_shift_cells = glm::vec3(shift);
-    if (cells == 64) options.volume.scheme.directions = 24;
+    options.of<VolumeOptions>().grid_cells = cells;
+    options.of<VolumeOptions>().grid_shift_cells = glm::vec3(shift);
+    if (cells == 64) options.of<VolumeOptions>().scheme.directions = 24;
     const Image image = render(context(), scene, camera, options).image;
     double dark = 0.0, lit = 0.0;
     int darks = 0, lits = 0;
@@ -117,7 +117,7 @@ TEST_F(Pictures, PassTimesSumToTheFrame) {
   const Scene scene = load_scene(kData / "cornell.glb");
   screen::FrameOptions options;
   options.size = {128, 128};
-  options.volume.grid_cells = 16;
+  options.of<VolumeOptions>().grid_cells = 16;
   options.backend = tested_backend();
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context().software(), true);
@@ -150,7 +150,7 @@ TEST_F(Pictures, AtriumRenders) {
 TEST_F(Pictures, SameBytesTwice) {
   screen::FrameOptions options;
   options.size = {64, 64};
-  options.volume.grid_cells = 16;
+  options.of<VolumeOptions>().grid_cells = 16;
   const Image a = render_file(kData / "cornell.glb", options).image;
   const Image b = render_file(kData / "cornell.glb", options).image;
   EXPECT_TRUE(a.pixels == b.pixels);

@@ -16,8 +16,6 @@
 namespace volgi::test {
 namespace {
 
-using screen::GiMode;
-
 constexpr glm::ivec2 kSize{64, 64};
 
 /// A closed room with a lamp in it, grey.
@@ -69,10 +67,10 @@ class Judge {
 
 class Shape : public GlTest {
  protected:
-  static screen::FrameOptions options(GiMode gi, int cells, Scheme scheme = Scheme::ordinates) {
+  static screen::FrameOptions options(Gi gi, int cells, Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o = picture_options(gi, kSize, screen::LightPart::indirect);
-    o.volume.grid_cells = cells;
-    o.volume.scheme.scheme = scheme;
+    o.of<VolumeOptions>().grid_cells = cells;
+    o.of<VolumeOptions>().scheme.scheme = scheme;
     return o;
   }
 };
@@ -100,8 +98,8 @@ TEST_F(Shape, Ducts) {
                             {2, 11.0, 9.5, {0.77, 1.03}, {0.87, 0.98}},
                             {4, 0.0, 4.0, {1.05, 1.3}, {1.3, 1.45}},
                             {8, 0.0, 2.5, {0.85, 1.03}, {1.0, 1.1}}}) {
-    for (GiMode mode : {GiMode::hybrid, GiMode::volume}) {
-      const std::string what = (mode == GiMode::hybrid ? "hybrid_" : "volume_") + std::to_string(c.width);
+    for (Gi mode : {Gi("hybrid"), Gi("volume")}) {
+      const std::string what = (mode == Gi("hybrid") ? "hybrid_" : "volume_") + std::to_string(c.width);
       screen::Frame frame(scene, options(mode, 8 * c.width));
       gl::PassTimer timer(context().software(), false);
       const auto seen_from = [&](const Camera& camera) {
@@ -109,17 +107,17 @@ TEST_F(Shape, Ducts) {
         return screen::image_from_texture(frame.radiance());
       };
       const double error = of_lit(seen_from(lit_end)).rmse_pct_denoised.value();
-      double limit = mode == GiMode::hybrid ? c.hybrid_percent : c.volume_percent;
+      double limit = mode == Gi("hybrid") ? c.hybrid_percent : c.volume_percent;
       if (limit == 0.0) {
         const Image image = render(context(), cube, from_lit_end(cube), options(mode, c.width)).image;
         limit = 2.0 * of_cube(image).rmse_pct_denoised.value();
       }
       EXPECT_LT(error, limit) << what;
       const double energy = of_dark(seen_from(dark_end)).ratio;
-      const glm::dvec2 bounds = mode == GiMode::hybrid ? c.hybrid_dark : c.volume_dark;
+      const glm::dvec2 bounds = mode == Gi("hybrid") ? c.hybrid_dark : c.volume_dark;
       EXPECT_GT(energy, bounds[0]) << what;
       EXPECT_LT(energy, bounds[1]) << what;
-      EXPECT_EQ(frame.report().volume.grid, glm::ivec3(8 * c.width, c.width, c.width));
+      EXPECT_EQ(frame.report().of<screen::VolumeReport>().grid, glm::ivec3(8 * c.width, c.width, c.width));
       RecordProperty(what,
                      std::to_string(error) + " % of " + std::to_string(limit) + ", dark end " + std::to_string(energy));
     }
@@ -130,9 +128,9 @@ TEST_F(Shape, Ducts) {
 // times too bright, with 256 cells along the box, which are three across, 1.4 times. Turned boxes look the same, but
 // for the few virtual lights that 130 sides see on the CPU.
 TEST_F(Shape, BoxesOfAHundredToOne) {
-  for (const auto& [mode, scheme, tolerance] : {std::tuple(GiMode::hybrid, Scheme::ordinates, 0.15),
-                                                {GiMode::volume, Scheme::ordinates, 1e-3},
-                                                {GiMode::volume, Scheme::conservative, 1e-3}}) {
+  for (const auto& [mode, scheme, tolerance] : {std::tuple(Gi("hybrid"), Scheme::ordinates, 0.15),
+                                                {Gi("volume"), Scheme::ordinates, 1e-3},
+                                                {Gi("volume"), Scheme::conservative, 1e-3}}) {
     double first = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       glm::vec3 size(1.0f), eye(0.1f), target(0.0f);
@@ -141,9 +139,9 @@ TEST_F(Shape, BoxesOfAHundredToOne) {
       target[axis] = 40.0f;
       const Scene scene = room(size, glm::vec3(0.05f));
       const Rendered r = render(context(), scene, inside(scene, eye, target), options(mode, 32, scheme));
-      EXPECT_EQ(r.report.volume.grid[axis], 32);
-      EXPECT_EQ(r.report.volume.sides, 4u * 32u + 2u);
-      EXPECT_EQ(r.report.volume.lost, glm::vec3(0.0f));
+      EXPECT_EQ(r.report.of<screen::VolumeReport>().grid[axis], 32);
+      EXPECT_EQ(r.report.of<screen::VolumeReport>().sides, 4u * 32u + 2u);
+      EXPECT_EQ(r.report.of<screen::VolumeReport>().lost, glm::vec3(0.0f));
       const double mean = mean_light(r.image);
       if (axis == 0) first = mean;
       EXPECT_GT(mean, 0.01);
@@ -158,18 +156,18 @@ TEST_F(Shape, FlatScenes) {
   for (int axis = 0; axis < 3; ++axis) {
     const Scene scene = square_across(axis);
     const Camera camera = framing_camera(scene.bounds_min, scene.bounds_max);
-    screen::FrameOptions no_gi = options(GiMode::none, 16);
+    screen::FrameOptions no_gi = options(Gi("none"), 16);
     no_gi.light = screen::LightPart::direct;
     const double direct = mean_light(render(context(), scene, camera, no_gi).image);
     EXPECT_GT(direct, 0.0);
     for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {
-      for (GiMode mode : {GiMode::hybrid, GiMode::volume}) {
+      for (Gi mode : {Gi("hybrid"), Gi("volume")}) {
         const Rendered r = render(context(), scene, camera, options(mode, 16, scheme));
         glm::ivec3 cells(16);
         cells[axis] = 1;
-        EXPECT_EQ(r.report.volume.grid, cells);
-        EXPECT_EQ(r.report.volume.lost, glm::vec3(0.0f));
-        const bool comes_back = mode == GiMode::volume && scheme == Scheme::conservative;
+        EXPECT_EQ(r.report.of<screen::VolumeReport>().grid, cells);
+        EXPECT_EQ(r.report.of<screen::VolumeReport>().lost, glm::vec3(0.0f));
+        const bool comes_back = mode == Gi("volume") && scheme == Scheme::conservative;
         EXPECT_LE(mean_light(r.image), comes_back ? 0.1 * direct : 0.0) << axis;
       }
     }
@@ -182,7 +180,7 @@ TEST_F(Shape, TwinsAgree) {
               sheet = room({100, 1, 100}, {0.05f, 0.05f, 0.05f});
   for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {
     for (const Scene* scene : {&flat, &rod, &sheet}) {
-      for (const CrosscheckRow& r : crosscheck(*scene, options(GiMode::volume, 32, scheme).volume, {1, 8}))
+      for (const CrosscheckRow& r : crosscheck(*scene, options(Gi("volume"), 32, scheme).of<VolumeOptions>(), {1, 8}))
         EXPECT_TRUE(r.passed()) << r.stage << ": " << r.maximum << " (limit " << r.limit << ')';
     }
   }

@@ -17,12 +17,12 @@ class Twin : public GlTest {
     screen::FrameOptions options;
     options.size = {16, 16};
     options.backend = backend;
-    options.volume.scheme.directions = 24;
-    options.volume.bounces = 16;  // the same orders: where a solver stops, within 0.2 %, is not compared
+    options.of<VolumeOptions>().scheme.directions = 24;
+    options.bounces = 16;  // the same orders: where a solver stops, within 0.2 %, is not compared
     screen::Frame frame(scene, options);
     gl::PassTimer timer(context().software(), false);
     frame.render(scene.cameras.at(0), timer);
-    return frame.report().volume;
+    return frame.report().of<screen::VolumeReport>();
   }
 };
 
@@ -55,8 +55,8 @@ TEST_F(Twin, PapersSchemes) {
         options.size = {32, 32};
         options.backend = backend;
         options.light = light;
-        options.volume.grid_cells = 16;
-        options.volume.scheme.scheme = scheme;
+        options.of<VolumeOptions>().grid_cells = 16;
+        options.of<VolumeOptions>().scheme.scheme = scheme;
         screen::Frame frame(scene, options);
         gl::PassTimer timer(context().software(), false);
         frame.render(scene.cameras.at(0), timer);

@@ -7,9 +7,20 @@
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
 #include "screen/base/image_from_texture.h"
+#include "screen/bounces/volume/frame_volume.h"
 #include "screen/frame/frame.h"
+#include "screen/gather/interleaved/area_light_gather.h"
+#include "screen/gather/strided/virtual_light_gather.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/lights/rsm/virtual_lights.h"
+#include "screen/visibility/area_maps/area_maps_stage.h"
+#include "screen/visibility/area_maps/virtual_area_lights.h"
+#include "screen/visibility/negative/negative_lights.h"
 
 namespace volgi::test {
+
+/// A name that --gi takes.
+using Gi = std::string_view;
 
 struct Rendered {
   Image image;
@@ -23,10 +34,9 @@ inline screen::Backend tested_backend() {
 }
 
 /// Small pictures by the tested backend.
-inline screen::FrameOptions picture_options(screen::GiMode gi, glm::ivec2 size,
-                                            screen::LightPart light = screen::LightPart::full) {
+inline screen::FrameOptions picture_options(Gi gi, glm::ivec2 size, screen::LightPart light = screen::LightPart::full) {
   screen::FrameOptions o;
-  o.gi = gi;
+  o.recipe = gi;
   o.size = size;
   o.light = light;
   o.backend = tested_backend();

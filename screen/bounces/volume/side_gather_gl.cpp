@@ -12,13 +12,13 @@ void SideGatherGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounc
   const auto scope = timer.scope(name);
   const VirtualLightListGl& lights = first_bounce.lights;
   voxels.bind();
-  first_bounce.area_lights.buffer().bind_uniform(1);
+  first_bounce.clusters.area_lights.buffer().bind_uniform(1);
   lights.buffer.bind_storage(0);
-  first_bounce.area_lights.order().bind_storage(1);
-  first_bounce.area_lights.cluster_of().bind_storage(2);
+  first_bounce.clusters.area_lights.order().bind_storage(1);
+  first_bounce.clusters.area_lights.cluster_of().bind_storage(2);
   flux.emitted().bind_storage(6);
   flux.punctual().bind_storage(7);
-  first_bounce.shadow.bind(first_bounce.maps, program_);
+  first_bounce.clusters.shadow.bind(first_bounce.clusters.maps, program_);
   program_.set("light_count", lights.count());
   program_.use();
   gl::dispatch({int(std::max(voxels.side_capacity, 1u)), 1, 1}, {64, 1, 1});

@@ -3,17 +3,14 @@
 #include "core/gl/program.h"
 #include "propagation/side_flux_gl.h"
 #include "screen/base/virtual_light_list_gl.h"
-#include "screen/visibility/area_maps/area_light_shadow.h"
-#include "screen/visibility/area_maps/virtual_area_lights.h"
+#include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
 
 /// The first bounce as the screen carries it: virtual lights, and how much of them is seen.
 struct FirstBounce {
   const VirtualLightListGl& lights;
-  const VirtualAreaLights& area_lights;
-  const ParaboloidDepthMaps& maps;
-  const AreaLightShadow& shadow;
+  const LightClusters& clusters;
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area

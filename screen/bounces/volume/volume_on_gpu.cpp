@@ -43,7 +43,7 @@ class LitVoxels {
   void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
     voxelization_.run(buffers, timer);
     flux_.begin(voxels());
-    if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.shadow);
+    if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.clusters.shadow);
     side_gather_->run(voxels(), first_bounce, flux_, timer);
   }
   /// @return false where the scene's bounds make another grid.

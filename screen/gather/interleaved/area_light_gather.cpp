@@ -29,17 +29,17 @@ glm::ivec2 place_in_block(int subset, int n) {
   return place;
 }
 
-void check(const AreaLightGatherOptions& options) {
+void wait_for_pictures() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT); }
+
+}  // namespace
+
+void AreaLightGather::check(const AreaLightGatherOptions& options) {
   const int n = options.interleave;
   if (n != 1 && n != 2 && n != 4 && n != 8)
     throw Error(ExitCode::usage, "interleaving of the area lights' gather: 1, 2, 4 or 8, not " + std::to_string(n));
   if (!(options.exact_rows >= 0.0f && std::isfinite(options.exact_rows)))
     throw Error(ExitCode::usage, "rows of pixels that are gathered again must be 0 or more");
 }
-
-void wait_for_pictures() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT); }
-
-}  // namespace
 
 AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& options, const AreaLightShadow& shadow)
     : options_(options), size_(size) {

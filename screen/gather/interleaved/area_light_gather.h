@@ -39,6 +39,8 @@ class AreaLightGather {
   static constexpr const char* blur_name = "screen/gather/interleaved/geometry_blur";
   static constexpr const char* exact_name = "screen/gather/interleaved/exact_pixels";
   /// @throws Error(usage) when interleave is none of its values, or exact_rows is negative or not finite.
+  static void check(const AreaLightGatherOptions& options);
+  /// @throws Error as check().
   AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& options, const AreaLightShadow& shadow);
 
   void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualAreaLights& area_lights,

@@ -16,6 +16,7 @@ namespace volgi::screen {
 class VirtualLightParts {
  public:
   static constexpr const char* name = "screen/lights/resample/virtual_light_parts";
+  static constexpr const char* product_name = "parts of virtual lights";
   VirtualLightParts();
 
   /// @param chosen  of `candidates`.

@@ -33,6 +33,7 @@ struct VirtualLightOptions {
 class VirtualLights {
  public:
   static constexpr const char* name = "screen/lights/rsm/virtual_lights";
+  static constexpr const char* product_name = "candidates for virtual lights";
   /// @param scene  must outlive this. Its lights may change at any time, its geometry with scene_moved().
   /// @throws Error(usage) when the options ask for less than one light, or more than kMost.
   VirtualLights(const Scene& scene, const VirtualLightOptions& options);

@@ -29,6 +29,7 @@ struct NegativeLightOptions {
 class NegativeLights {
  public:
   static constexpr const char* name = "screen/visibility/negative/negative_lights";
+  static constexpr const char* product_name = "negative lights";
   explicit NegativeLights(const NegativeLightOptions& options);
 
   /// @param voxels  for Method::sides, else null.

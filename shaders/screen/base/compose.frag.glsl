@@ -1,7 +1,7 @@
 #version 450 core
-// Sum of the radiance layers that are asked for; black where there is no geometry.
+// Sum of radiance layers; black where there is no geometry.
 layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D layers[8];
+layout(binding = 1) uniform sampler2D layers[15];
 uniform int layer_count;
 
 layout(location = 0) out vec4 radiance;

@@ -11,7 +11,7 @@ float rasterized_spot(const volgi::Scene& scene, const volgi::Camera& camera) {
     const volgi::gl::Context context;
     volgi::gl::PassTimer timer(context.software(), false);
     volgi::screen::FrameOptions options;
-    options.gi = volgi::screen::GiMode::none;
+    options.recipe = "none";
     options.size = {3, 3};
     volgi::screen::Frame frame(scene, options);
     frame.render(camera, timer);

@@ -59,12 +59,12 @@ double rms_error(const gl::Context& context, float near_zone) {
   const Scene scene = floor_and_wall();
   const Camera camera = at_the_edge(scene);
   screen::FrameOptions options;
-  options.gi = screen::GiMode::val;
+  options.recipe = "val";
   options.light = screen::LightPart::indirect;
   options.size = kSize;
-  options.virtual_lights.count = 256;
-  options.near_zone = near_zone;
-  options.area_light_gather.interleave = 1;
+  options.of<screen::VirtualLightOptions>().count = 256;
+  options.of<screen::ResampleOptions>().near_zone = near_zone;
+  options.of<screen::AreaLightGatherOptions>().interleave = 1;
   const Image image = render(context, scene, camera, options).image;
   const Seen seen(context, scene, camera, kSize);
   double sum = 0.0;

@@ -7,6 +7,8 @@
 #include "core/hilbert.h"
 #include "screen/frame/frame.h"
 #include "screen/lights/resample/choose_virtual_lights.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/lights/rsm/virtual_lights.h"
 #include "tests/screen/gathered.h"
 #include "tests/screen/virtual_light_scenes.h"
 #include "tests/support/gl_test.h"
@@ -195,11 +197,11 @@ TEST_F(ChooseVirtualLightsTest, OneOfOneIsNoChoice) {
   Scene scene = colourful_room();
   scene.lights = {point_light(kLamp, 2.5f)};
   screen::FrameOptions o;
-  o.gi = screen::GiMode::vpl;
+  o.recipe = "vpl";
   o.size = {8, 8};
-  o.shadow_resolution = kResolution;
-  o.virtual_lights.count = 100;
-  o.choose_one_of = 1;
+  o.of<screen::ReflectiveShadowMap::Resolution>() = kResolution;
+  o.of<screen::VirtualLightOptions>().count = 100;
+  o.of<screen::ResampleOptions>().candidates = 1;
   screen::Frame frame(scene, o);
   gl::PassTimer timer(context().software(), false);
   frame.render(framing_camera(scene.bounds_min, scene.bounds_max), timer);

@@ -1,0 +1,193 @@
+#include "screen/bounces/volume/volume_stage.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "screen/bounces/volume/frame_volume.h"
+#include "screen/frame/plan.h"
+#include "screen/lights/rsm/virtual_lights.h"
+
+namespace volgi::screen {
+
+namespace {
+
+using enum LightPath;
+
+constexpr const char* ORDINATES[] = {"step", "characteristic"};
+constexpr const char* SOLVERS[] = {"plain", "conjugate_gradients"};
+
+/// BounceRules::Solver without its `automatic`, which is what nobody's choice means.
+struct SolverChoice {
+  std::optional<int> solver;
+};
+/// grid.shift moves along all axes.
+struct GridShift {
+  float cells = 0.0f;
+};
+
+constexpr Parameter PARAMETERS[] = {
+    number<GridShift>(
+        {"grid.shift", "cells", "moves the grid on each axis"}, {-1, 1}, [](GridShift& o) -> auto& { return o.cells; }),
+    choice<VolumeOptions>(
+        {"ordinates.characteristic", "", "ordinates: how power leaves a cell", "by the grid"}, ORDINATES,
+        [](VolumeOptions& o) -> auto& { return o.scheme.ordinates; }),
+    choice<SolverChoice>(
+        {"solver.cg", "", "one bounce after another, or conjugate gradients over bounces",
+         "conjugate_gradients where the scheme allows it"},
+        SOLVERS, [](SolverChoice& o) -> auto& { return o.solver; }),
+    yes_no<VolumeOptions>(
+        {"solver.warm", "", "starts from the last frame's answer"},
+        [](VolumeOptions& o) -> auto& { return o.warm_start; }),
+    number<VolumeOptions>(
+        {"solver.passes", "passes", "amortised: at most so many over the volume a frame", "until done"}, {1, 10000},
+        [](VolumeOptions& o) -> auto& { return o.passes_a_run; }),
+    yes_no<VolumeOptions>(
+        {"conservative.coarse", "", "conservative: carries the tail on a grid of half the edge"},
+        [](VolumeOptions& o) -> auto& { return o.scheme.coarse_start; }),
+    yes_no<VolumeOptions>(
+        {"gaitatzes.half_albedo", "", "gaitatzes2010: takes 0.5 for every albedo after the first bounce"},
+        [](VolumeOptions& o) -> auto& { return o.scheme.constant_albedo; }),
+};
+
+VolumeOptions volume_options(const FrameOptions& options) {
+  VolumeOptions o = options.of<VolumeOptions>();
+  if (options.of<GridShift>().cells != 0.0f) o.grid_shift_cells = glm::vec3(options.of<GridShift>().cells);
+  if (const auto solver = options.of<SolverChoice>().solver) o.solver = BounceRules::Solver(1 + *solver);
+  o.bounces = options.bounces;
+  if (options.light == LightPart::direct && carries_sides(o.scheme.scheme)) o.bounces = 0;
+  return o;
+}
+
+StageRole role_alone(const FrameOptions& options) {
+  const VolumeOptions o = volume_options(options);
+  bounce_rules(o, 0.5f);
+  // The papers' volumes do not know which of their light is direct.
+  const bool mixes = !carries_sides(o.scheme.scheme);
+  if (mixes && !asked_paths(options.light, options.bounces).meets(INDIRECT_PATHS)) return {.active = false};
+  return {.adds = {{LightPaths::all() - LightPaths{emission_seen, punctual_direct}}}};
+}
+
+StageRole role_after_first_bounce(const FrameOptions& options) {
+  const VolumeOptions o = volume_options(options);
+  if (!carries_sides(o.scheme.scheme))
+    throw Error(ExitCode::usage,
+                "a first bounce on the screen, as --gi hybrid has it, needs a scheme that carries "
+                "orders: --scheme ordinates or conservative");
+  bounce_rules(o, 0.5f);
+  return {.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
+          .adds = {{{punctual_higher, emission_first, emission_higher}}}};
+}
+
+FrameReport::Value rgb(glm::vec3 v) { return std::vector<double>{double(v.x), double(v.y), double(v.z)}; }
+
+void add_figures(const VolumeReport& v, FrameReport& report) {
+  const glm::ivec3 g = v.grid;
+  const bool there = g.x > 0;
+  const auto words = [&](const std::string& text) { return there ? text : std::string(); };
+  report.add("grid", std::vector<double>{double(g.x), double(g.y), double(g.z)},
+             words(fmt::format("grid {}x{}x{}", g.x, g.y, g.z)));
+  report.add("sides", double(v.sides), words(fmt::format("{} sides", v.sides)));
+  report.add("orders", double(v.bounces.orders), words(fmt::format("{} orders", v.bounces.orders)));
+  report.add("iterations", double(v.bounces.passes), words(fmt::format("{} passes over the volume", v.bounces.passes)));
+  report.add("converged", v.bounces.converged);
+  report.add("backend", std::string(v.on_gpu ? "gpu" : "cpu"),
+             words(std::string("volume on the ") + (v.on_gpu ? "GPU" : "CPU")));
+  report.add("power_W.injected", rgb(v.injected));
+  report.add("power_W.sent", rgb(v.bounces.sent));
+  report.add("power_W.left", rgb(v.bounces.left));
+  report.add("power_W.lost", rgb(v.lost));
+}
+
+class VolumeStage : public Stage {
+ public:
+  VolumeStage(const StageContext& context, VolumeOptions::Source source)
+      : scene_(context.scene),
+        size_(context.options.size),
+        options_(volume_options(context.options)),
+        on_gpu_(runs_on_gpu(context.options.backend)),
+        after_first_bounce_(source == VolumeOptions::Source::first_bounce) {
+    options_.source = source;
+    if (after_first_bounce_) options_.virtual_lights = context.options.of<VirtualLightOptions>().count;
+    make();
+    warn_of_mixed_light(context);
+  }
+
+  void run(FrameData& frame, gl::PassTimer& timer) override {
+    if (after_first_bounce_) {
+      const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>()};
+      volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
+      // What reaches surfaces from emission has been reflected before.
+      frame.layers.push_back({&volume_->direct(), {emission_first}});
+      frame.layers.push_back({&volume_->indirect(), {punctual_higher, emission_higher}});
+      return;
+    }
+    volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, nullptr, timer);
+    const LightPaths reflected{punctual_first, emission_first, punctual_higher, emission_higher};
+    if (carries_sides(options_.scheme.scheme)) {
+      frame.layers.push_back({&volume_->direct(), {emission_direct}});
+      frame.layers.push_back({&volume_->indirect(), reflected});
+    } else {
+      frame.layers.push_back({&volume_->indirect(), reflected | LightPaths{emission_direct}});
+    }
+  }
+  void scene_changed() override {
+    if (volume_->follow_scene()) return;
+    volume_.reset();  // first, so that there are never two
+    make();
+  }
+  void report(FrameReport& report) const override {
+    report.of<VolumeReport>() = volume_->report();
+    add_figures(report.of<VolumeReport>(), report);
+    report.memory_bytes += report.of<VolumeReport>().memory_bytes;
+  }
+  std::string announcement() const override {
+    return fmt::format("volume: on the {}, about {:.1f} MiB", on_gpu_ ? "GPU" : "CPU",
+                       double(volume_bytes_expected(scene_, options_, on_gpu_)) / 1048576.0);
+  }
+
+ private:
+  void make() {
+    volume_ = on_gpu_ ? make_volume_on_gpu(scene_, options_, size_) : make_volume_on_cpu(scene_, options_, size_);
+  }
+  void warn_of_mixed_light(const StageContext& context) const {
+    if (carries_sides(options_.scheme.scheme) || context.options.light != LightPart::indirect) return;
+    if (!paths_in(scene_).contains(emission_direct)) return;
+    warn_once(scene_.name +
+              ": the papers' schemes cannot tell light straight from emissive surfaces from reflected "
+              "light; --light indirect shows both");
+  }
+
+  const Scene& scene_;
+  glm::ivec2 size_;
+  VolumeOptions options_;
+  bool on_gpu_, after_first_bounce_;
+  std::unique_ptr<FrameVolume> volume_;
+};
+
+template <VolumeOptions::Source source>
+std::unique_ptr<Stage> make_stage(const StageContext& context) {
+  return std::make_unique<VolumeStage>(context, source);
+}
+
+void report_nothing(FrameReport& report) { add_figures(VolumeReport(), report); }
+
+}  // namespace
+
+void prefer_lpv(TypeMap& settings) { settings.of<VolumeOptions>().scheme.scheme = Scheme::lpv2009; }
+
+constinit const StageType VOLUME{.name = "bounces/volume",
+                                 .slot = Slot::bounces,
+                                 .parameters = PARAMETERS,
+                                 .role = role_alone,
+                                 .make = make_stage<VolumeOptions::Source::lights>,
+                                 .report_nothing = report_nothing};
+
+constinit const StageType VOLUME_AFTER_FIRST_BOUNCE{.name = "bounces/volume after the first bounce",
+                                                    .slot = Slot::bounces,
+                                                    .parameters = PARAMETERS,
+                                                    .role = role_after_first_bounce,
+                                                    .make = make_stage<VolumeOptions::Source::first_bounce>,
+                                                    .report_nothing = report_nothing};
+
+}  // namespace volgi::screen

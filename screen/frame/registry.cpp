@@ -1,0 +1,133 @@
+#include "screen/frame/registry.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "screen/base/base_parameters.h"
+#include "screen/bounces/volume/volume_stage.h"
+#include "screen/gather/interleaved/interleaved_stage.h"
+#include "screen/gather/strided/strided_stage.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/lights/rsm/rsm_stage.h"
+#include "screen/visibility/area_maps/area_maps_stage.h"
+#include "screen/visibility/negative/negative_stage.h"
+
+namespace volgi::screen {
+
+namespace {
+
+// One line a technique.
+constexpr const StageType* STAGE_TYPES[] = {
+    &RSM_LIGHTS,         &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE,     &AREA_MAPS, &STRIDED_GATHER,
+    &INTERLEAVED_GATHER, &VOLUME,           &VOLUME_AFTER_FIRST_BOUNCE,
+};
+
+using enum LightPath;
+constexpr LightPaths FIRST_ORDER{emission_direct, punctual_first};
+
+std::vector<Recipe> make_recipes() {
+  return {
+      {"hybrid",
+       "the first bounce on the screen by clustered virtual lights, the others through the volume",
+       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &VOLUME_AFTER_FIRST_BOUNCE},
+       LightPaths::all()},
+      {"volume", "all light but direct light through the volume", {&VOLUME}, LightPaths::all()},
+      {"lpv", "volume --scheme lpv2009", {&VOLUME}, LightPaths::all(), &prefer_lpv},
+      {"val",
+       "one bounce by virtual lights, each as far as its cluster sees (Dong et al. 2009)",
+       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER},
+       FIRST_ORDER},
+      {"negative",
+       "one bounce by virtual lights, less what negative lights take away (Cochran and Steele 2007)",
+       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE, &STRIDED_GATHER},
+       FIRST_ORDER},
+      {"vpl",
+       "one bounce by virtual lights without shadows",
+       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &STRIDED_GATHER},
+       FIRST_ORDER},
+      {"none", "direct light of punctual lights alone", {}, {}},
+  };
+}
+
+}  // namespace
+
+std::span<const StageType* const> stage_types() { return STAGE_TYPES; }
+
+std::span<const Recipe> recipes() {
+  static const std::vector<Recipe> all = make_recipes();
+  return all;
+}
+
+const Recipe& find_recipe(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Recipe& recipe : recipes()) {
+    if (name == recipe.name) return recipe;
+    known.emplace_back(recipe.name);
+  }
+  throw Error(ExitCode::usage, fmt::format("--gi {}: no such recipe; there are {}", name, fmt::join(known, ", ")));
+}
+
+const Recipe& default_recipe(const FrameOptions& options) {
+  for (const Recipe& recipe : recipes()) {
+    try {
+      for (const StageType* stage : recipe.stages) stage->role(options);
+      return recipe;
+    } catch (const Error&) {
+    }
+  }
+  return recipes().back();
+}
+
+const Recipe& recipe_of(const FrameOptions& options) {
+  return options.recipe.empty() ? default_recipe(options) : find_recipe(options.recipe);
+}
+
+std::string recipes_that_carry(LightPaths paths) {
+  std::vector<std::string> names;
+  for (const Recipe& recipe : recipes()) {
+    if ((paths - recipe.claims).empty()) names.emplace_back(recipe.name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+void apply_recipe(const std::string& name, FrameOptions& options) {
+  const Recipe& recipe = find_recipe(name);
+  options.recipe = recipe.name;
+  if (recipe.preset != nullptr) recipe.preset(options.settings);
+}
+
+std::vector<const Parameter*> parameters() {
+  std::vector<const Parameter*> all;
+  const auto add = [&](std::span<const Parameter> some) {
+    for (const Parameter& p : some) {
+      const auto same = [&](const Parameter* known) { return std::string(known->name) == p.name; };
+      if (std::none_of(all.begin(), all.end(), same)) all.push_back(&p);
+    }
+  };
+  add(base_parameters());
+  for (const StageType* stage : STAGE_TYPES) add(stage->parameters);
+  return all;
+}
+
+const Parameter& find_parameter(const std::string& name) {
+  std::vector<std::string> known;
+  for (const Parameter* p : parameters()) {
+    if (name == p->name) return *p;
+    known.emplace_back(p->name);
+  }
+  throw Error(ExitCode::usage, fmt::format("--set {}: no such parameter; there are {}", name, fmt::join(known, ", ")));
+}
+
+void set_parameter(TypeMap& settings, const std::string& text) {
+  const size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw Error(ExitCode::usage, fmt::format("--set {}: give NAME=VALUE, such as grid.shift=0.25", text));
+  }
+  const Parameter& p = find_parameter(text.substr(0, equals));
+  p.set(settings, parse_value(p, text.substr(equals + 1), "--set " + text));
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,89 @@
+#include "screen/gather/interleaved/interleaved_stage.h"
+
+#include <optional>
+
+#include "screen/gather/interleaved/area_light_gather.h"
+#include "screen/gather/interleaved/near_lights.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/visibility/area_maps/light_clusters.h"
+
+namespace volgi::screen {
+
+namespace {
+
+using Options = AreaLightGatherOptions;
+
+constexpr Parameter PARAMETERS[] = {
+    number<Options>(
+        {"val.interleave", "pixels", "blocks of n x n share the lights: 1, 2, 4 or 8"}, {1, 8},
+        [](Options& o) -> auto& { return o.interleave; }),
+    number<Options>(
+        {"val.exact", "rows", "as many pixels as so many rows hold get every light, the worst ones"}, {0, 65536},
+        [](Options& o) -> auto& { return o.exact_rows; }),
+};
+
+constexpr LightPaths PATHS{LightPath::emission_direct, LightPath::punctual_first};
+
+StageRole role(const FrameOptions& options) {
+  AreaLightGather::check(options.of<Options>());
+  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
+  if (lights_have_parts(options)) {
+    r.needs.push_back(product<VirtualLightParts>());
+    r.adds = {{PATHS, LightShare::near}, {PATHS, LightShare::far}};
+  } else {
+    r.adds = {{PATHS}};
+  }
+  return r;
+}
+
+class InterleavedStage : public Stage {
+ public:
+  explicit InterleavedStage(const StageContext& context) : options_(options_for(context)), size_(context.options.size) {
+    if (options_.near_zone > 0.0f) near_.emplace(size_, options_.near_zone);
+  }
+
+  void run(FrameData& frame, gl::PassTimer& timer) override {
+    const auto& lights = frame.get<VirtualLightListGl>();
+    const auto& clusters = frame.get<LightClusters>();
+    if (!gather_) gather_.emplace(size_, options_, clusters.shadow);
+    if (near_) near_->run(frame.gbuffer, lights, frame.get<VirtualLightParts>(), timer);
+    gather_->run(frame.gbuffer, lights, clusters.area_lights, clusters.maps, clusters.shadow, frame.scene_diagonal_m,
+                 timer);
+    add_layers(*gather_, near_ ? LightShare::far : LightShare::whole, lights, frame);
+    if (near_) add_layers(*near_, LightShare::near, lights, frame);
+  }
+  void report(FrameReport& report) const override {
+    report.memory_bytes += (gather_ ? gather_->bytes() : 0) + (near_ ? near_->bytes() : 0);
+  }
+
+ private:
+  static Options options_for(const StageContext& context) {
+    Options o = context.options.of<Options>();
+    o.near_zone = lights_have_parts(context.options) ? context.options.of<ResampleOptions>().near_zone : 0.0f;
+    return o;
+  }
+  template <class Pass>
+  static void add_layers(const Pass& pass, LightShare share, const VirtualLightListGl& lights, FrameData& frame) {
+    // Without lights on emissive surfaces nobody has written it in this frame.
+    if (lights.emitted > 0) frame.layers.push_back({&pass.direct(), {LightPath::emission_direct}, share});
+    if (frame.wanted.contains(LightPath::punctual_first))
+      frame.layers.push_back({&pass.indirect(), {LightPath::punctual_first}, share});
+  }
+
+  Options options_;
+  glm::ivec2 size_;
+  std::optional<AreaLightGather> gather_;  // made with the first frame, whose shadow method its shader has
+  std::optional<NearLights> near_;
+};
+
+}  // namespace
+
+constinit const StageType INTERLEAVED_GATHER{.name = "gather/interleaved",
+                                             .slot = Slot::gather,
+                                             .parameters = PARAMETERS,
+                                             .role = role,
+                                             .make = [](const StageContext& context) -> std::unique_ptr<Stage> {
+                                               return std::make_unique<InterleavedStage>(context);
+                                             }};
+
+}  // namespace volgi::screen

@@ -1,0 +1,66 @@
+#include "screen/visibility/area_maps/area_maps_stage.h"
+
+#include "screen/visibility/area_maps/light_clusters.h"
+
+namespace volgi::screen {
+
+namespace {
+
+constexpr const char* SHADOWS[] = {"convolution", "percentage_closer", "single"};
+
+constexpr Parameter PARAMETERS[] = {
+    number<VirtualAreaLightOptions>(
+        {"val.count", "", "virtual area lights, clusters of virtual point lights that share a shadow", nullptr,
+         "--vals"},
+        {1, VIRTUAL_AREA_LIGHTS_MOST}, [](VirtualAreaLightOptions& o) -> auto& { return o.count; }),
+    choice<AreaMapOptions>(
+        {"val.shadow", "", "convolution soft shadow maps, percentage-closer, or one comparison with the map"}, SHADOWS,
+        [](AreaMapOptions& o) -> auto& { return o.shadow; }),
+    number<AreaMapOptions>(
+        {"val.map", "texels", "on a side of an area light's map"}, {16, 4096},
+        [](AreaMapOptions& o) -> auto& { return o.texels; }),
+};
+
+StageRole role(const FrameOptions& /*options*/) {
+  return {.needs = {product<VirtualLightListGl>()}, .makes = {product<LightClusters>()}};
+}
+
+class AreaMapsStage : public Stage {
+ public:
+  explicit AreaMapsStage(const StageContext& context)
+      : area_lights_(context.options.of<VirtualAreaLightOptions>()),
+        maps_(context.options.of<AreaMapOptions>().texels, area_lights_.count()),
+        shadow_(AreaLightShadow::make(context.options.of<AreaMapOptions>().shadow, maps_.resolution(),
+                                      area_lights_.count())) {}
+
+  void run(FrameData& frame, gl::PassTimer& timer) override {
+    const auto& lights = frame.get<VirtualLightListGl>();
+    area_lights_.run(lights.buffer, lights.count(), frame.scene_diagonal_m, timer);
+    maps_.run(frame.triangles, area_lights_, timer);
+    shadow_->run(maps_, timer);
+    frame.lend(clusters_);
+  }
+  void report(FrameReport& report) const override {
+    report.add("vals", double(area_lights_.count()), std::to_string(area_lights_.count()) + " clusters");
+    report.memory_bytes += area_lights_.bytes() + maps_.bytes() + shadow_->bytes();
+  }
+
+ private:
+  VirtualAreaLights area_lights_;
+  ParaboloidDepthMaps maps_;
+  std::unique_ptr<AreaLightShadow> shadow_;
+  LightClusters clusters_{area_lights_, maps_, *shadow_};
+};
+
+}  // namespace
+
+constinit const StageType AREA_MAPS{.name = "visibility/area_maps",
+                                    .slot = Slot::visibility,
+                                    .parameters = PARAMETERS,
+                                    .role = role,
+                                    .make = [](const StageContext& context) -> std::unique_ptr<Stage> {
+                                      return std::make_unique<AreaMapsStage>(context);
+                                    },
+                                    .report_nothing = [](FrameReport& report) { report.add("vals", 0.0); }};
+
+}  // namespace volgi::screen
