@@ -5,12 +5,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include "core/halton.h"
+#include "core/luminance.h"
 #include "core/surface.h"
 
 namespace volgi {
 namespace {
-
-double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 double area_of(const Mesh& mesh, std::uint32_t triangle) {
   const glm::uvec3 t = mesh.triangles[triangle];

@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "core/light_layers.h"
+#include "core/luminance.h"
 
 namespace volgi {
 namespace {
-
-double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 /// 1 - cos without the cancellation.
 double one_minus_cos(double angle_rad) {

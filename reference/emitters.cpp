@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/luminance.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -15,8 +16,6 @@ double triangle_area(const Mesh& mesh, std::uint32_t triangle) {
   const glm::dvec3 a(mesh.positions[t.x]);
   return 0.5 * glm::length(glm::cross(glm::dvec3(mesh.positions[t.y]) - a, glm::dvec3(mesh.positions[t.z]) - a));
 }
-
-double luminance(glm::vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 // Weight of a triangle in the choice: mean luminance from a few points of a texture. Any positive weight is unbiased; a
 // thousandth of the factor's luminance is kept where the points happen to miss the bright part.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/luminance.h"
 #include "reference/ssim.h"
 
 namespace volgi {
@@ -17,7 +18,6 @@ constexpr int kBlock = 16;
 constexpr int kFewestInBlock = 32;
 
 double channel_mean(glm::dvec3 c) { return (c.x + c.y + c.z) / 3.0; }
-double luminance(glm::dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 bool finite(glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
 
 struct Means {

@@ -1,5 +1,7 @@
 #include "reference/ssim.h"
 
+#include "core/luminance.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +30,6 @@ double srgb(double x) {
   x = std::clamp(x, 0.0, 1.0);
   return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
-
-double luminance(glm::dvec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 Plane encoded_half_size(const Image& image, double exposure) {
   Plane out = make_plane(image.width / 2, image.height / 2);

@@ -16,6 +16,7 @@
 #include "core/light_cone.h"
 #include "core/light_layers.h"
 #include "core/light_shares.h"
+#include "core/luminance.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -121,7 +122,7 @@ VirtualLightsCpu make_lights(const EmbreeScene& embree, const EmitterPoints& emi
 
 /// Flux that meets a surface again, to half a ray.
 double returning_flux(const EmbreeScene& embree, const VirtualLight& light, size_t index) {
-  const double flux = glm::dot(glm::dvec3(light.flux), glm::dvec3(0.2126, 0.7152, 0.0722));
+  const double flux = luminance(light.flux);
   if (flux == 0.0) return 0.0;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   const glm::vec3 origin = embree.leaving_point(light.position, -light.normal, kFar);

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/gl/raster_state.h"
+#include "shaders/screen/base/gbuffer.shared.h"
 
 namespace volgi::screen {
 
@@ -23,8 +24,8 @@ void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> la
   }
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
-  gbuffer.position().bind(0);
-  for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(1 + i));
+  gbuffer.bind();
+  for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(GBUFFER_UNITS + i));
   program_.use();
   program_.set("layer_count", int(layers.size()));
   gl::draw_fullscreen_triangle();

@@ -5,6 +5,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "shaders/screen/base/compose.shared.h"
 
 namespace volgi::screen {
 
@@ -13,7 +14,7 @@ class Compose {
  public:
   static constexpr const char* name = "screen/base/compose";
   explicit Compose(glm::ivec2 size);
-  static constexpr size_t MAX_LAYERS = 15;  // and the positions: as many textures as GL promises
+  static constexpr size_t MAX_LAYERS = COMPOSE_LAYERS;
   /// @param layers  RGBA32F of the G-buffer's size; each light path in one of them only, which the caller sees to.
   /// @throws Error(over_limit) above MAX_LAYERS.
   void run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, gl::PassTimer& timer);

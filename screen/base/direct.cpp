@@ -19,9 +19,7 @@ void Direct::run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::Pa
   framebuffer_.bind();
   constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
   glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, zero.data());
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   program_.use();
   for (int light = 0; light < maps.light_count(); ++light) {
     maps.bind(light);

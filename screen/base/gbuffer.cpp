@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/gl/raster_state.h"
+#include "shaders/screen/base/gbuffer.shared.h"
 
 namespace volgi::screen {
 
@@ -35,6 +36,12 @@ void GBuffer::run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassT
   const bool perspective = camera.kind == Camera::Kind::perspective;
   program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
   scene.draw(program_);
+}
+
+void GBuffer::bind() const {
+  position_.bind(GBUFFER_POSITION_UNIT);
+  normals_.bind(GBUFFER_NORMALS_UNIT);
+  albedo_.bind(GBUFFER_ALBEDO_UNIT);
 }
 
 }  // namespace volgi::screen

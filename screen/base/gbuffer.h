@@ -18,6 +18,8 @@ class GBuffer {
   void run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassTimer& timer);
 
   glm::ivec2 size() const { return size_; }
+  /// Positions, normals and albedo, for shaders with screen/base/gbuffer.glsl.
+  void bind() const;
   size_t bytes() const { return (4 + 16 + 8 + 8 + 16 + 4) * size_t(size_.x) * size_t(size_.y); }
   const gl::Texture& depth() const { return depth_; }        // D32F, 1 at znear, 0 at zfar and in the background
   const gl::Texture& position() const { return position_; }  // RGBA32F, centred frame; w = 1, or 0 in the background

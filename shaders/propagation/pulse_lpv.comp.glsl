@@ -3,6 +3,7 @@
 // neighbour to the five faces of this cell that do not touch it, the lobe's intensity there times the solid angle that the
 // face shows, sent on as a clamped cosine lobe about the way out. No occlusion, no reflection. All passes accumulate.
 // Set by the program: ORDER = 2
+#include "shared/constants.glsl"
 #include "shared/grid.shared.h"
 #include "propagation/pulse_lobes.glsl"
 
@@ -13,7 +14,7 @@ layout(binding = 1) uniform sampler3D accumulated;
 layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
 layout(binding = 1, rgba32f) uniform restrict writeonly image3D next_accumulated;
 
-const float FOUR_PI = 12.5663706;
+const float FOUR_PI = 4.0 * PI;
 
 vec3 flux_towards(Lobes from, vec3 direction, float solid_angle) {
   return max(along(from, lobe_about(direction, 1.0, 1.0)), vec3(0.0)) * (solid_angle / FOUR_PI);

@@ -3,13 +3,14 @@
 // do not depend on order.
 // Where alpha varies, colours count as it does; what is opaque has one of the whole cell (end_cell).
 #define FOOTPRINT (material_alpha_mode == MATERIAL_OPAQUE ? 1.0 : 1.0 / 3.0)
+#include "shared/constants.glsl"
 #include "voxel/visit_cells.glsl"
 #include "voxel/cell_sums.glsl"
 
 void add_piece(inout Heap heap, vec3 weights, float stopped) {
   if (material_alpha_mode == MATERIAL_OPAQUE) return;
   heap.albedo += stopped * albedo_alpha_at(weights).rgb;
-  heap.radiosity = max(heap.radiosity, 3.14159265 * material_emission(uv0_at(weights), uv1_at(weights)));
+  heap.radiosity = max(heap.radiosity, PI * material_emission(uv0_at(weights), uv1_at(weights)));
 }
 
 // At the middle line of a cell's column, or where the triangle is nearest to it by its weights.

@@ -22,9 +22,7 @@ void RadianceGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, cons
   auto scope = timer.scope(name);
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   radiance.sh.bind(3);
   if (normal_occupancy != nullptr) normal_occupancy->bind(4);
   voxels.bind();

@@ -20,9 +20,7 @@ void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Voxel
   auto scope = timer.scope(name);
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   voxels.bind();
   direct_irradiance.bind_storage(6);
   indirect_irradiance.bind_storage(7);

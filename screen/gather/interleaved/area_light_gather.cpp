@@ -72,9 +72,7 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
     const auto scope = timer.scope(arrange_name);
     arrange(lights, area_lights);
   }
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   area_lights.buffer().bind_uniform(1);
   const auto set_up = [&](const gl::Program& program) {
     program.set("near_zone", options_.near_zone);

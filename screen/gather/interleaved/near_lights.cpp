@@ -44,7 +44,7 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
   parts.near_lights().bind_storage(0);
   list_.bind_storage(1);
   large_masks_.bind_storage(4);
-  gbuffer.position().bind(0);
+  gbuffer.bind();
   tiles_.use();
   const auto find = [&](glm::ivec2 tiles, int tile_size, int large_tiles, const gl::Buffer& masks) {
     tiles_.set("tiles", tiles);
@@ -73,9 +73,7 @@ void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, c
   list_.bind_storage(1);
   masks_.bind_storage(2);
   parts.pieces().bind_storage(3);
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   indirect_.bind_image(0, GL_WRITE_ONLY);
   direct_.bind_image(1, GL_WRITE_ONLY);
   gather_.use();

@@ -22,9 +22,7 @@ void dispatch_threads(size_t count) {
 }
 
 void bind_pixels(const GBuffer& gbuffer) {
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
 }
 
 }  // namespace

@@ -41,9 +41,7 @@ void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffe
   weights_.bind_storage(2);
   lights_.buffer.bind_storage(3);
   ranges_.bind_storage(4);
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
-  gbuffer.albedo().bind(2);
+  gbuffer.bind();
   receivers_program_.use();
   gl::dispatch({kReceivers, 1, 1}, {64, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -49,8 +49,7 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
                          const VoxelGridGl* voxels, gl::PassTimer& timer) {
   assert((options_.method == Method::sides) == (voxels != nullptr));
   const auto scope = timer.scope(name);
-  gbuffer.position().bind(0);
-  gbuffer.normals().bind(1);
+  gbuffer.bind();
   lights.buffer.bind_storage(0);
   lights_.bind_storage(1);
   if (voxels != nullptr) {

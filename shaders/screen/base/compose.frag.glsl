@@ -1,7 +1,9 @@
 #version 450 core
 // Sum of radiance layers; black where there is no geometry.
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D layers[15];
+#include "screen/base/compose.shared.h"
+#include "screen/base/gbuffer.glsl"
+
+layout(binding = GBUFFER_UNITS) uniform sampler2D layers[COMPOSE_LAYERS];
 uniform int layer_count;
 
 layout(location = 0) out vec4 radiance;

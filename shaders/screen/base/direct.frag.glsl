@@ -1,11 +1,10 @@
 #version 450 core
 // Light of one punctual light that reaches the viewer after one reflection: albedo / pi * E * visibility. Lights are
 // added by blending.
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/reflective_shadow_map.glsl"
 
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 uniform int light;
 
 layout(location = 0) out vec4 radiance;
@@ -22,6 +21,5 @@ void main() {
   // The light must be on the side of the triangle that the viewer sees.
   if (cosine <= 0.0 || dot(geometric_normal, to_light) <= 0.0 || irradiance == vec3(0.0)) discard;
   irradiance *= cosine * rsm_visibility(light, position.xyz, geometric_normal);
-  const float pi = 3.14159265358979;
-  radiance = vec4(texelFetch(albedo_map, pixel, 0).rgb / pi * irradiance, 1.0);
+  radiance = vec4(texelFetch(albedo_map, pixel, 0).rgb / PI * irradiance, 1.0);
 }

@@ -3,22 +3,19 @@
 // harmonics: trilinear, dot product with the clamped cosine. Gaitatzes 2010 section 4.3, eq. 9-12: "from the eight closest
 // grid points only the ones corresponding to occupied voxels".
 // Set by the program: ORDER = 2
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/grid.shared.h"
 #include "shared/octahedral.glsl"
 #include "shared/sh.shared.h"
 
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(binding = 3) uniform sampler3D radiance_sh;       // coefficients stacked in z
 layout(binding = 4) uniform sampler3D normal_occupancy;  // w: occupancy
 uniform bool occupied_only;
 
 layout(location = 0) out vec4 direct_radiance;
 layout(location = 1) out vec4 indirect_radiance;
-
-const float PI = 3.14159265;
 
 vec3 coefficient(ivec3 cell, int i) { return texelFetch(radiance_sh, cell + ivec3(0, 0, i * grid.cells.z), 0).rgb; }
 

@@ -1,6 +1,7 @@
 #version 450 core
 // What every side reflects of the virtual lights: A rho E [W]. Lights come in the order of their area lights, so that
 // each one's shadow is looked up once.
+#include "shared/disk_to_point.glsl"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
@@ -18,8 +19,6 @@ layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
 layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
-
-const float PI = 3.14159265358979;
 
 void main() {
   uint s = gl_GlobalInvocationID.x;
@@ -44,7 +43,7 @@ void main() {
       visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
     }
     float squared = dot(w, w);
-    vec3 irradiance = l.flux * (visibility * cosines / (squared * (PI * squared + l.area_m2) + 1e-30));
+    vec3 irradiance = l.flux * disk_to_point(visibility * cosines, squared, l.area_m2);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
   }

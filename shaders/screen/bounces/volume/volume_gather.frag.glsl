@@ -2,6 +2,8 @@
 // Irradiance of every pixel from the sides of the cells in front of its surface: trilinear over the eight cells around a
 // point half a cell in front of it, sides with like normals only, and only of cells that lie on the pixel's side of their
 // own surfaces, so that neither the surface nor the room behind it lights it. docs/theory.md#reconstruction.
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "shared/octahedral.glsl"
@@ -11,9 +13,6 @@ layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 layout(std430, binding = 6) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
 layout(std430, binding = 7) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 
 #include "propagation/neighbourhood.glsl"
 
@@ -107,7 +106,7 @@ void main() {
   if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, ANY_CELL);
   if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, ANY_CELL);
   if (g.weight == 0.0) return;
-  vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / 3.14159265;
+  vec3 reflectance = texelFetch(albedo_map, pixel, 0).rgb / PI;
   direct_radiance = vec4(reflectance * g.direct / g.weight, 1.0);
   indirect_radiance = vec4(reflectance * g.indirect / g.weight, 1.0);
 }

@@ -3,6 +3,8 @@
 // disk-to-point form of conventions.md, "VPL".
 // Every interleave-th pixel in both directions takes one subset of the lights, times the number of subsets; with
 // interleave 1, and LISTED (the pixels of a list), all of the lights, and the sum ends in radiance.
+#include "shared/disk_to_point.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "screen/lights/resample/near_light.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
@@ -16,9 +18,6 @@ layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint 
 #else
 layout(local_size_x = 8, local_size_y = 8) in;
 #endif
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(binding = 0, rgba32f) uniform image2D indirect;
 layout(binding = 1, rgba32f) uniform image2D direct;
 layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
@@ -34,8 +33,6 @@ uniform int with_direct;
 uniform int begins;
 uniform int ends;
 
-const float PI = 3.14159265358979;
-
 struct Irradiance {
   vec3 reflected, emitted;
 };
@@ -47,7 +44,7 @@ Irradiance sum_of_lights(int begin, int end, vec3 x, vec3 normal, vec3 geometric
     float squared = dot(w, w);
     float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
     cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
-    float form = 1.0 / (squared * (PI * squared + lights[i].area_m2) + 1e-30);
+    float form = disk_to_point(1.0, squared, lights[i].area_m2);
     vec3 irradiance = lights[i].flux * (far_share(squared * squared * form, near_zone) * cosines * form);
     if (lights[i].kind == VIRTUAL_LIGHT_EMITTED) sum.emitted += irradiance;
     else sum.reflected += irradiance;

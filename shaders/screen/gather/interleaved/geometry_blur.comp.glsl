@@ -5,13 +5,12 @@
 // a subset with one pixel left is taken from there, and the mean goes over the subsets that are found. The second axis
 // ends in radiance.
 // Fourth channel and `doubt`: variance of the mean [luminance squared], judged by what varies. See below.
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(binding = 3) uniform sampler2D irradiance;  // fourth channel: the variance; read along the second axis only
 layout(binding = 0, rgba32f) uniform writeonly image2D blurred;
 layout(binding = 1, r32f) uniform image2D doubt;  // radiance
@@ -22,8 +21,6 @@ uniform float least_cosine;
 uniform float off_plane;
 uniform int ends;
 uniform int adds;  // to the doubt of another picture
-
-const float PI = 3.14159265358979;
 
 struct Surface {
   vec3 position, normal;

@@ -1,19 +1,16 @@
 #version 450 core
 // Light of the pieces of virtual lights on the pixels near them.
+#include "shared/disk_to_point.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/gather/interleaved/near_lights.glsl"
 
 layout(local_size_x = NEAR_TILE, local_size_y = NEAR_TILE) in;
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(std430, binding = 3) readonly buffer Pieces { LightPiece pieces[]; };
 layout(binding = 0, rgba32f) writeonly uniform image2D indirect;
 layout(binding = 1, rgba32f) writeonly uniform image2D direct;
 uniform int first_emitted;
 uniform int with_direct;
-
-const float PI = 3.14159265358979;
 
 struct Receiver {
   vec3 position, normal, geometric;
@@ -23,7 +20,7 @@ struct Receiver {
 vec3 irradiance_of(Receiver at, int p, out float form) {
   vec3 w = pieces[p].position - at.position;
   float squared = dot(w, w);
-  form = squared / (PI * squared + pieces[p].area_m2 + 1e-30);
+  form = disk_form(squared, pieces[p].area_m2);
   float cosines = max(dot(w, at.normal), 0.0) * max(-dot(w, octahedral_decode(unpackSnorm2x16(pieces[p].normal))), 0.0);
   cosines = dot(w, at.geometric) > 0.0 ? cosines : 0.0;
   return pieces[p].flux * (cosines * form / (squared * squared + 1e-30));
@@ -47,7 +44,7 @@ vec3 irradiance_of_light(Receiver at, int i) {
   NearLight light = near_lights[i];
   vec3 way = light.position - at.position;
   float squared = dot(way, way);
-  float share = 1.0 - far_share(squared / (PI * squared + light.area_m2 + 1e-30), zone);
+  float share = 1.0 - far_share(disk_form(squared, light.area_m2), zone);
   bool behind = dot(way, at.geometric) <= -light.spread_m || -dot(way, light.normal) <= light.rise_m;
   if (share <= 0.0 || behind) return vec3(0.0);
   vec3 sum = vec3(0.0);

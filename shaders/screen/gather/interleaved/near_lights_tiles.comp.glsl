@@ -1,10 +1,10 @@
 #version 450 core
 // Which lights are near a tile of pixels, and may have some of its surfaces in front of them. First for large tiles, then
 // for small ones, among what their large one has.
+#include "screen/base/gbuffer.glsl"
 #include "screen/gather/interleaved/near_lights.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform sampler2D position_map;
 layout(std430, binding = 4) readonly buffer LargeMasks { uint large_masks[]; };
 uniform int light_count;
 uniform int tile_size;    // pixels on a side

@@ -2,13 +2,12 @@
 // Cochran and Steele 2007, section 3.5: pixels whose surface is like that of the coarse pixels around them take their
 // irradiance from those; the others are listed, to be gathered again. We depart: irradiance is interpolated between two
 // or four coarse pixels, all of which must be like the pixel; and albedo comes after it, at full resolution.
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/base/coarse_pixels.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(binding = 3) uniform sampler2D coarse_indirect;  // irradiance; w = 0 in the background
 layout(binding = 4) uniform sampler2D coarse_direct;
 layout(binding = 0, rgba32f) uniform writeonly image2D indirect_radiance;
@@ -18,8 +17,6 @@ uniform float threshold;
 uniform float contrast;
 uniform float unlike_distance_m;
 uniform int with_direct;
-
-const float PI = 3.14159265358979;
 
 struct Coarse {
   vec3 position, normal;

@@ -3,15 +3,14 @@
 // form of Nichols 2010, eq. 4.1), less what negative lights take away. A dispatch takes one block of lights; the first
 // begins the sum, the last ends it.
 // LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
+#include "shared/disk_to_point.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/visibility/negative/negative_light.shared.h"
 #include "shared/virtual_light.shared.h"
 #include "screen/base/coarse_pixels.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 layout(binding = 0, rgba32f) uniform image2D target;  // irradiance; when the sum ends at full resolution radiance
 layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
 layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[NEGATIVE_LIGHTS_MOST]; };
@@ -24,8 +23,6 @@ uniform int ends;
 layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #endif
 
-const float PI = 3.14159265358979;
-
 vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
   vec3 sum = vec3(0.0);
   for (int i = first_light; i < end_light; ++i) {
@@ -33,7 +30,7 @@ vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
     float squared = dot(w, w);
     float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
     cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
-    sum += lights[i].flux * (cosines / (squared * (PI * squared + lights[i].area_m2) + 1e-30));
+    sum += lights[i].flux * disk_to_point(cosines, squared, lights[i].area_m2);
   }
   return sum;
 }

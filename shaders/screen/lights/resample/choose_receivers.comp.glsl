@@ -1,14 +1,12 @@
 #version 450 core
 // Pixels that stand for the picture: the first 256 points of the Halton sequence of bases 2 and 3.
+#include "screen/base/gbuffer.glsl"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/base/halton_pixel.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
-layout(binding = 2) uniform sampler2D albedo_map;
 
 void main() {
   uint k = gl_GlobalInvocationID.x;

@@ -1,5 +1,6 @@
 #version 450 core
 // What each candidate sends to the receivers, without visibility.
+#include "shared/disk_to_point.glsl"
 #include "shared/luminance.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
 
@@ -16,7 +17,7 @@ void main() {
       vec3 w = l.position - receivers[k].position.xyz;
       float squared = dot(w, w);
       float cosines = max(dot(w, receivers[k].normal.xyz), 0.0) * max(-dot(w, l.normal), 0.0);
-      sum += receivers[k].position.w * cosines / (squared * (3.14159265358979 * squared + l.area_m2) + 1e-30);
+      sum += disk_to_point(receivers[k].position.w * cosines, squared, l.area_m2);
     }
   }
   weights[first_candidate + i] = vec2(flux * sum, flux);

@@ -1,5 +1,6 @@
 // The virtual light that stands for one part of what a punctual light sends. Cochran and Steele 2007, §3.1; flux and
 // area: conventions.md, "VPL".
+#include "shared/constants.glsl"
 #include "screen/lights/rsm/virtual_light_at.glsl"
 
 uniform mat3 world_from_axis;  // turns -Y to the light's axis
@@ -40,7 +41,7 @@ VirtualLight sample_sun(ReflectiveShadowLight l, vec2 place, float measure) {
 // solid angles (Archimedes); or to the sun's rectangle.
 VirtualLight sample_place(ReflectiveShadowLight l, vec2 place, float measure) {
   if (l.light.type == LIGHT_DIRECTIONAL) return sample_sun(l, place, measure);
-  float azimuth = 6.28318530717959 * (place.x - 0.5);
+  float azimuth = 2.0 * PI * (place.x - 0.5);
   float height = cone_height * place.y;
   float radius = sqrt(max(height * (2.0 - height), 0.0));
   vec3 direction = vec3(radius * cos(azimuth), height - 1.0, radius * sin(azimuth));

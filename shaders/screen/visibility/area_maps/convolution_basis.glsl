@@ -8,6 +8,7 @@
 //   - depths run from 0 to 1 - 2 STEP, so that no |x| exceeds 1 - STEP.
 #ifndef VOLGI_CONVOLUTION_BASIS_GLSL
 #define VOLGI_CONVOLUTION_BASIS_GLSL
+#include "shared/constants.glsl"
 
 const float STEP_LEAK = 0.054129062;
 const float STEP_WIDTH = 0.064223325;
@@ -15,7 +16,7 @@ const float STEP_RANGE = 1.0 - 2.0 * STEP_WIDTH;
 // What 8 bits may err by in s: 2/pi sum 1 / (2k - 1), times |sin| + |cos| <= sqrt(2), times 1/255 (half a step of
 // values from -1 to 1).
 const float STEP_ROUNDING = 1.0671 * 1.4142 / 255.0;
-const vec4 STEP_FREQUENCY = vec4(1.0, 3.0, 5.0, 7.0) * 3.14159265358979;
+const vec4 STEP_FREQUENCY = vec4(1.0, 3.0, 5.0, 7.0) * PI;
 
 // Depth in the series' units: distance over the farthest that the layer sees; where there is nothing, the end. So one
 // far thing takes resolution from all others: from where a blocker is, the step has risen only 2 STEP farther on, 15 %

@@ -1,6 +1,7 @@
 #version 450 core
 // Every light to the cluster with the nearest center, of those equally near the first. Dong et al. 2009, section 5.1.
 #define CENTERS_UNIFORM
+#include "shared/constants.glsl"
 #include "screen/visibility/area_maps/virtual_area_lights.glsl"
 
 layout(local_size_x = 64) in;  // kListStep
@@ -21,7 +22,7 @@ float angle_between(vec3 a, vec3 b) {
   ratio = ratio * t + 0.166650979;
   ratio = ratio * t + 1.00000008;
   float angle = 2.0 * sqrt(t) * ratio;
-  return apart ? 3.14159265 - angle : angle;
+  return apart ? PI - angle : angle;
 }
 
 uint nearest_cluster(vec3 position, vec3 normal) {

@@ -7,7 +7,6 @@
 layout(std430, binding = 4) buffer AreaLights { VirtualAreaLight area_lights[]; };
 layout(std430, binding = 5) readonly buffer Order { uint order[]; };
 
-const float PI = 3.14159265358979;
 #define FAR 3.0e38
 
 uint t = gl_LocalInvocationIndex;

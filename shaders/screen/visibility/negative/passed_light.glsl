@@ -1,12 +1,12 @@
 // Light that virtual lights send through a pixel's surface from behind: Cochran and Steele 2007, section 3.3.
 #ifndef VOLGI_PASSED_LIGHT_GLSL
 #define VOLGI_PASSED_LIGHT_GLSL
+#include "shared/constants.glsl"
+#include "screen/base/gbuffer.glsl"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "shared/virtual_light.shared.h"
 
-layout(binding = 0) uniform sampler2D position_map;
-layout(binding = 1) uniform sampler2D normal_map;
 layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
 uniform int light_count;
 uniform vec4 viewer;  // position and 1, or the direction towards an orthographic camera and 0
@@ -30,7 +30,7 @@ void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight s
   float cosine_here = dot(way, normal), cosine_there = dot(way, l.normal);
   if (min(cosine_here, cosine_there) <= LEAST_COSINE * distance) return;
   vec3 irradiance =
-      l.flux * (cosine_here * cosine_there / (squared * (3.14159265358979 * squared + l.area_m2)));
+      l.flux * (cosine_here * cosine_there / (squared * (PI * squared + l.area_m2)));
   sum.irradiance += irradiance;
   sum.direction += luminance(irradiance) * way / distance;
 }

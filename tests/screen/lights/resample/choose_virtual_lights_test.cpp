@@ -5,6 +5,7 @@
 
 #include "core/halton.h"
 #include "core/hilbert.h"
+#include "core/luminance.h"
 #include "screen/frame/frame.h"
 #include "screen/lights/resample/choose_virtual_lights.h"
 #include "screen/lights/resample/resample_stage.h"
@@ -18,8 +19,6 @@ namespace {
 
 using ChooseVirtualLightsTest = GlTest;
 using screen::ChooseVirtualLights;
-
-double luminance(glm::dvec3 c) { return glm::dot(c, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
 /// Share of what is chosen that each candidate of one source has (screen/lights/resample/choose_virtual_lights.h).
 std::vector<double> probabilities(const std::vector<VirtualLight>& candidates, const Seen& seen) {

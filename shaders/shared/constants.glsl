@@ -1,0 +1,6 @@
+#ifndef VOLGI_CONSTANTS_GLSL
+#define VOLGI_CONSTANTS_GLSL
+
+const float PI = 3.14159265358979;
+
+#endif
