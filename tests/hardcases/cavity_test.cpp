@@ -1,5 +1,5 @@
-// Tilted surfaces where a furnace cannot tell a wrong rule from a right one (accuracy, "tilt"): a sphere's cavity,
-// whose indirect irradiance is the same everywhere whatever the source, and black walls, which return nothing.
+// Tilted surfaces where a furnace cannot tell a wrong rule from a right one (docs/hard-cases.md, "tilt"): a sphere's
+// cavity, whose indirect irradiance is the same everywhere whatever the source, and black walls, which return nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The dark room of thin_wall (accuracy.md: thin) where pictures_test.cpp and hybrid_test.cpp do not look: by the
-// `conservative` scheme, and at 128 cells.
+// The dark room of thin_wall (docs/hard-cases.md, "thin") where pictures_test.cpp and hybrid_test.cpp do not look: by
+// the `conservative` scheme, and at 128 cells.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Hundreds of bounces between walls that absorb a hundredth (accuracy.md: long, furnace at 0.99).
+// Hundreds of bounces between walls that absorb a hundredth (docs/hard-cases.md, "long", "furnace").
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // What a grid's place, a scene's orientation, its unit and its lights' strength must not change, for whole frames
-// (accuracy.md: shift, rotate; scale, offset and range where invariance_test.cpp and first_bounce_test.cpp do not
-// look).
+// (docs/hard-cases.md: "shift", "rotate"; "scale", "offset" and "range" where invariance_test.cpp and
+// first_bounce_test.cpp do not look).
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,6 +1,6 @@
-// Rooms that are long, thin or flat (accuracy.md: shape): how far pictures of ducts are from paths, that boxes of
-// 100:1:1 and scenes of one layer of cells show something sane, and that the twins agree on them. Flat scenes in files:
-// flat_volume_test.cpp.
+// Rooms that are long, thin or flat (docs/hard-cases.md, "shape"): how far pictures of ducts are from paths, that boxes
+// of 100:1:1 and scenes of one layer of cells show something sane, and that the twins agree on them. Flat scenes in
+// files: flat_volume_test.cpp.
 #include <gtest/gtest.h>
 
 #include <string>
