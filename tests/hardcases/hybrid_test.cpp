@@ -112,8 +112,8 @@ TEST_F(Hybrid, AreaLightsAgainstOneBounce) {
 }
 
 // The row of the interleaved gather: 3 % of what every light at every pixel gives.
-TEST_F(Hybrid, InterleavedIsEveryLightAtEveryPixel) {
-  if (tested_backend() == screen::Backend::cpu) return;  // no volume in it: the same passes
+TEST_F(Hybrid, InterleavedIsEveryLightAtEveryPixelOnGpuOnly) {
+  if (const char* reason = reason_to_skip(TestedOn::gpu_only, context())) GTEST_SKIP() << reason;
   for (const std::string name : {"cornell", "room", "thin_wall", "occluder"}) {
     screen::FrameOptions o = options(screen::GiMode::val);
     const Image interleaved = picture(name.c_str(), o);

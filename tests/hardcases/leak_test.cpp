@@ -83,8 +83,8 @@ TEST_F(Leak, ThinWallAt128Cells) {
 }
 
 // `val` has no grid, and no other test of its own.
-TEST_F(Leak, ThinWallByAreaLights) {
-  if (tested_backend() == screen::Backend::cpu) return;  // no volume: the same passes
+TEST_F(Leak, ThinWallByAreaLightsOnGpuOnly) {
+  if (const char* reason = reason_to_skip(TestedOn::gpu_only, context())) GTEST_SKIP() << reason;
   screen::FrameOptions o = options(16, 0.0f);
   o.gi = screen::GiMode::val;
   expect_below(0.005, o, "val");
