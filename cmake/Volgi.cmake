@@ -15,7 +15,7 @@ add_library(volgi_options INTERFACE)
 add_library(volgi::options ALIAS volgi_options)
 set_target_properties(volgi_options PROPERTIES EXPORT_NAME options)
 target_compile_features(volgi_options INTERFACE cxx_std_20)
-# No contraction: CPU results must not depend on which instructions the compiler fuses (conventions: Numbers).
+# No contraction: CPU results must not depend on which instructions the compiler fuses (docs/conventions.md#numbers).
 target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-Wall;-Wextra;-Wshadow;-Wconversion;-Wno-sign-conversion;-ffp-contract=off>)
 if(VOLGI_WERROR)
   target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-Werror>)

@@ -4,7 +4,7 @@
 
 namespace volgi {
 
-/// What the programs return to the shell (README, "Exit codes").
+/// What the programs return to the shell (docs/conventions.md#exit-codes).
 enum class ExitCode : int {
   done = 0,
   comparison_failed = 1,

@@ -73,7 +73,7 @@ struct Mesh {
   std::vector<glm::uvec3> triangles;
 };
 
-/// Punctual light (KHR_lights_punctual), in the centred frame. Units: conventions, "Radiometry".
+/// Punctual light (KHR_lights_punctual), in the centred frame. Units: docs/conventions.md#radiometry.
 struct Light {
   enum class Type { point, spot, directional };
   std::string name;

@@ -26,7 +26,7 @@ namespace {
 
 using shared::Side;
 
-// accuracy.md, "twin".
+// docs/hard-cases.md, "twin".
 constexpr double kCellsThatMayDiffer = 1e-3;
 constexpr double kAttributeLimit = 1e-3;
 constexpr double kPowerLimit = 1e-4;

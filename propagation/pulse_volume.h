@@ -24,7 +24,7 @@ class PulseVolume {
   /// passes over the volume.
   BounceReport run(std::span<const glm::vec4> side_flux, int iterations);
   /// Accumulated radiance, in the frame that pixels read: irradiance on a surface of normal n is the cosine lobe about
-  /// -n (conventions: directions are those that light travels).
+  /// -n (directions are those that light travels: docs/conventions.md#spherical-harmonics).
   RadianceVolume radiance() const;
   size_t bytes() const;
 

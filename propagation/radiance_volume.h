@@ -8,8 +8,8 @@
 namespace volgi {
 
 /// Radiance in free space as spherical harmonics per cell [W m^-2 sr^-1], rgb in x, y, z; real, orthonormal, in the
-/// order 00, 1-1 (y), 10 (z), 11 (x), then 2-2, 2-1, 20, 21, 22 (conventions). The direction is the one that light
-/// travels. Index space is cell coordinates, the transform that of world_from_index.
+/// order 00, 1-1 (y), 10 (z), 11 (x), then 2-2, 2-1, 20, 21, 22 (docs/conventions.md#spherical-harmonics). The
+/// direction is the one that light travels. Index space is cell coordinates, the transform that of world_from_index.
 struct RadianceVolume {
   std::vector<openvdb::Vec3SGrid::Ptr> sh;  // 4 or 9
 };

@@ -6,7 +6,7 @@
 namespace volgi {
 
 /// Irradiance per side [W m^-2] from the power that sides have received, timer "propagation/side_irradiance":
-/// conventions' E = (P/A - (s-1) B0) / (1 + (s-1) rho), then the area-weighted mean over the sides with normals within
+/// E of side_irradiance() (docs/theory.md#sides), then the area-weighted mean over the sides with normals within
 /// 45 degrees in the 3^3 cells around that can be reached without crossing a surface, then clamped at zero.
 class SideIrradianceGl {
  public:

@@ -20,7 +20,7 @@ struct VolumeOptions {
   std::optional<int> passes_a_run;
   /// What the volume starts from. lights: direct light, and it carries all of the rest. first_bounce: the irradiance of
   /// virtual lights at its sides, where the screen carries the first bounce of punctual light and the arrival of
-  /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (techniques, "Composition").
+  /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (docs/theory.md#composition).
   enum class Source { lights, first_bounce } source = Source::lights;
   // Of first_bounce (core/visibility/virtual_lights_cpu.h, propagation/side_gather.h):
   int virtual_lights = 1024;                // at most kMostVirtualLights

@@ -24,7 +24,7 @@ struct VirtualLightGatherOptions {
 /// what is left of this against path_trace() is sampling and the bounces that the list does not carry.
 ///
 /// One camera ray per pixel centre; there the radiance is, over the lights of each kind,
-///   sum of rho/pi · flux · cos_x · cos_l / (pi d² + A)        (conventions.md, "VPL"; Nichols 2010, eq. 4.1)
+///   sum of rho/pi · flux · cos_x · cos_l / (pi d² + A)        (docs/conventions.md#virtual-lights)
 /// REFLECTED lights make the indirect layer. EMITTED ones stand for the direct light of emissive surfaces, so the
 /// direct layer is they, the exact punctual light and the emission that the camera sees. NEGATIVE lights are left out:
 /// they stand for visibility. As in path_trace(), light must be on the viewer's side of both normals.

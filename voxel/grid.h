@@ -9,7 +9,7 @@ namespace volgi {
 using shared::Grid;
 
 /// N cubic cells along the longest axis of the scene's bounds, as many as needed along the others (rounded up, at least
-/// one), box centred in the grid, no padding (conventions, "Space").
+/// one), box centred in the grid, no padding (docs/conventions.md#space).
 /// @param shift_cells  moves the grid by that part of a cell on each axis and adds one cell where it is not zero, so
 ///                     that the bounds stay inside: for tests of what must not depend on the grid's place.
 /// @throws Error(usage) when N < 1; Error(bad_input) when the scene has no triangles.

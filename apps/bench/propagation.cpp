@@ -36,7 +36,7 @@ void add_quad(Scene& scene, int material, glm::vec3 corner, glm::vec3 u, glm::ve
   scene.meshes.push_back(mesh);
 }
 
-/// accuracy.md's closed_box: a 2 m cube with an emitter 0.5 m square in the ceiling's middle.
+/// closed_box (docs/hard-cases.md#scenes): a 2 m cube with an emitter 0.5 m square in the ceiling's middle.
 Scene closed_box() {
   Scene scene;
   scene.name = "closed_box";

@@ -9,8 +9,8 @@
 
 namespace volgi::app {
 
-/// The --stats object (README, "Statistics"): scene, mode, size, device, times per pass and frame, grid, orders,
-/// memory.
+/// The --stats object (docs/conventions.md#statistics): scene, mode, size, device, times per pass and frame, grid,
+/// orders, memory.
 nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size,
                            const gl::Context& context, gl::PassTimer& timer, int frames,
                            const screen::FrameReport& report);

@@ -20,8 +20,8 @@ class Context {
 
   const std::string& device_name() const;  // GL_RENDERER
   const std::string& version() const;      // GL_VERSION
-  bool software() const;                   // llvmpipe, softpipe, swrast: timer queries lie there (conventions: Times)
-  int debug_errors() const;                // high-severity or error-type messages so far
+  bool software() const;     // llvmpipe, softpipe, swrast: timer queries lie (docs/conventions.md#statistics)
+  int debug_errors() const;  // high-severity or error-type messages so far
 
  private:
   struct Data;

@@ -25,7 +25,7 @@ namespace {
 
 using shared::VirtualLight;
 
-constexpr float kLeastCosine = 0.05f;  // conventions.md, "VPL"
+constexpr float kLeastCosine = 0.05f;  // docs/conventions.md#virtual-lights
 constexpr int kAnyResolution = 256;    // of a sun's layer: the margin that it makes is taken off again
 
 /// A part of what a punctual light sends.

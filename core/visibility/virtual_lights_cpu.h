@@ -18,8 +18,8 @@ struct VirtualLightsCpu {
 /// Virtual point lights without GL: twin of screen/lights/rsm/virtual_lights with Sampling::halton, which looks the
 /// same samples up in reflective shadow maps. Rays meet surfaces where they are; maps know them to a texel, so that the
 /// two differ at silhouettes, at edges of albedo and in texture detail. BLEND surfaces stop a ray with probability
-/// alpha (hashed). Flux and area: conventions.md, "VPL"; Cochran and Steele 2007, §3.1. Cost: one ray a light, in
-/// parallel; the result does not depend on threads.
+/// alpha (hashed). Flux and area: docs/conventions.md#virtual-lights; Cochran and Steele 2007, §3.1. Cost: one ray a
+/// light, in parallel; the result does not depend on threads.
 /// @param emitters  of embree.scene().
 /// @param count     of all sources together, shared by power (core/light_shares.h); at least 1.
 VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count);

@@ -1,6 +1,6 @@
 #version 450 core
 // Between two orders: what sides have received is added to the total, and what they return (plus the sources that start
-// with this order) becomes what they send. conventions: "Volume quantities".
+// with this order) becomes what they send. docs/conventions.md#volume-quantities.
 #include "shared/side.shared.h"
 
 layout(local_size_x = 64) in;

@@ -1,6 +1,7 @@
 #version 450 core
 // Single sides of tilted surfaces carry staircase noise of tens of percent: the irradiance that pixels see is the
-// mean by side_weight() over the sides with like normals in the 3^3 cells around, clamped at zero afterwards (conventions).
+// mean by side_weight() over the sides with like normals in the 3^3 cells around, clamped at zero afterwards
+// (docs/conventions.md#volume-quantities).
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 

@@ -1,4 +1,4 @@
-// Punctual lights: what C++ uploads, and their irradiance. KHR_lights_punctual; conventions.md "Radiometry".
+// Punctual lights: what C++ uploads, and their irradiance. KHR_lights_punctual; docs/conventions.md#radiometry.
 #ifndef VOLGI_LIGHT_SHARED_H
 #define VOLGI_LIGHT_SHARED_H
 #include "shared/base.shared.h"

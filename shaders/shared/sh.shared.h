@@ -1,10 +1,10 @@
 // Spherical harmonics up to band 2 and what the SH schemes integrate: `conservative` the flux through a cell's six
 // faces, lpv2009 over the faces of a neighbour, gaitatzes2010 over a 90-degree cone. Real, orthonormal, no
-// Condon-Shortley sign; order 00, 1-1 (y), 10 (z), 11 (x), 2-2 (xy), 2-1 (yz), 20, 21 (xz), 22 (conventions). Lobes
-// here are coefficients of an intensity [W/sr] times sqrt(4 pi), so that the first number is the power [W] (before
-// clamp_rescale; a rescaled lobe carries the sum of what its faces pass): I(d) is
-// 1/(4 pi) times the sum of lobe_i and sh_basis_i(d). Order 1 is a vec4; order 2 adds a vec4 (xy, yz, 20, xz) and a
-// float (22).
+// Condon-Shortley sign; order 00, 1-1 (y), 10 (z), 11 (x), 2-2 (xy), 2-1 (yz), 20, 21 (xz), 22
+// (docs/conventions.md#spherical-harmonics). Lobes here are coefficients of an intensity [W/sr] times sqrt(4 pi), so
+// that the first number is the power [W] (before clamp_rescale; a rescaled lobe carries the sum of what its faces
+// pass): I(d) is 1/(4 pi) times the sum of lobe_i and sh_basis_i(d). Order 1 is a vec4; order 2 adds a vec4 (xy, yz,
+// 20, xz) and a float (22).
 #ifndef VOLGI_SH_SHARED_H
 #define VOLGI_SH_SHARED_H
 #include "shared/base.shared.h"

@@ -1,4 +1,4 @@
-// Sides: what one cell sees on one of its six faces when a surface blocks it. conventions: "Volume quantities".
+// Sides: what one cell sees on one of its six faces when a surface blocks it. docs/conventions.md#volume-quantities.
 #ifndef VOLGI_SIDE_SHARED_H
 #define VOLGI_SIDE_SHARED_H
 #include "shared/base.shared.h"

@@ -1,4 +1,4 @@
-// Virtual lights: small one-sided disks that stand for lit or emissive surface. conventions.md, "VPL".
+// Virtual lights: small one-sided disks that stand for lit or emissive surface. docs/conventions.md#virtual-lights.
 #ifndef VOLGI_VIRTUAL_LIGHT_SHARED_H
 #define VOLGI_VIRTUAL_LIGHT_SHARED_H
 #include "shared/base.shared.h"

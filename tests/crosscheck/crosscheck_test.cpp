@@ -1,5 +1,5 @@
-// The GPU's volume against its CPU twin, stage by stage (accuracy.md: twin), for every scheme, on grids that are cubes
-// and grids that are not. What counts as equal is in propagation/crosscheck.cpp.
+// The GPU's volume against its CPU twin, stage by stage (docs/hard-cases.md, "twin"), for every scheme, on grids that
+// are cubes and grids that are not. What counts as equal is in propagation/crosscheck.cpp.
 #include "propagation/crosscheck.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Tilted surfaces where a furnace cannot tell a wrong rule from a right one (accuracy, "tilt"): a sphere's cavity,
-// whose indirect irradiance is the same everywhere whatever the source, and black walls, which return nothing.
+// Tilted surfaces where a furnace cannot tell a wrong rule from a right one (docs/hard-cases.md, "tilt"): a sphere's
+// cavity, whose indirect irradiance is the same everywhere whatever the source, and black walls, which return nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -117,6 +117,35 @@ class Cavity : public GlTest {
   }
 };
 
+// A turned furnace as furnace_test.cpp has it, but by all sides of its walls: pixels see the middles of some, which
+// pulses of `conservative` light too much. In software the GPU has time for fewer cells.
+TEST_F(Cavity, TurnedFurnaceConservative) {
+  const int cells = tested_backend() == screen::Backend::gpu && context().software() ? 12 : 32;
+  const glm::mat3 about_y = rotation({0, 1, 0}, 45.0f);
+  const glm::mat3 all_ways = rotation({1, 0, 0}, 30.0f) * rotation({0, 1, 0}, 20.0f) * rotation({0, 0, 1}, 10.0f);
+  for (float albedo : {0.5f, 0.8f}) {
+    std::string shown;
+    for (const glm::mat3& turn : {about_y, all_ways}) {
+      Scene scene;
+      add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f),
+                     turn);
+      const Grid grid = make_grid(scene, cells);
+      const Solved s = solve(scene, grid, Scheme::conservative, albedo);
+      double sum = 0.0, areas = 0.0;
+      for (size_t i = 0; i < s.sides.size(); ++i) {
+        const glm::vec3 c = shared::world_from_cell(grid, glm::vec3(shared::cell_coord(grid, s.sides[i].cell)) + 0.5f);
+        if (glm::dot(s.sides[i].normal, c) > 0.0f) continue;  // seen from outside
+        sum += double(s.sides[i].area_m2 * (s.direct[i].x + s.indirect[i].x));
+        areas += double(s.sides[i].area_m2);
+      }
+      const double radiance = 1.0 + double(albedo) * sum / areas / glm::pi<double>();
+      EXPECT_NEAR(radiance * double(1.0f - albedo), 1.0, 0.03) << albedo;
+      shown += std::to_string(radiance * double(1.0f - albedo)) + " ";
+    }
+    RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)), shown);
+  }
+}
+
 TEST_F(Cavity, SphereOrdinates) {
   for (float albedo : {0.3f, 0.7f}) {
     const double ratio = sphere_ratio(albedo, Scheme::ordinates, 24);
@@ -133,7 +162,9 @@ TEST_F(Cavity, SphereConservative) {
     for (glm::vec3 centre : {glm::vec3(0.0f), glm::vec3(0.03f, -0.02f, 0.05f), glm::vec3(-0.05f, 0.04f, 0.02f),
                              glm::vec3(0.04f, 0.05f, -0.03f)}) {
       const double ratio = sphere_ratio(albedo, Scheme::conservative, 16, centre);
-      EXPECT_NEAR(ratio, 1.0, 0.06) << "albedo " << albedo;
+      EXPECT_NEAR(ratio, 1.0, 0.03) << "albedo " << albedo;
+      RecordProperty("albedo_" + std::to_string(int(10.0f * albedo)) + "_at_" + std::to_string(centre.x),
+                     std::to_string(ratio));
       sum += ratio;
     }
     EXPECT_NEAR(sum / 4.0, 1.0, 0.03) << "albedo " << albedo;
@@ -149,7 +180,7 @@ struct BlackCase {
   Scheme scheme;
   int cells;
   float half_edge;
-  double most_excess;  // 1.5 times the worst measured
+  double most_excess;  // a tenth above what is measured; 0.03 is asked for (docs/results/where-we-miss.md)
 };
 
 void PrintTo(const BlackCase& c, std::ostream* out) { *out << c.cells << " cells, half edge " << c.half_edge; }
@@ -184,9 +215,9 @@ TEST_P(BlackSurface, ReturnsNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Schemes, BlackSurface,
                          testing::Values(BlackCase{Scheme::ordinates, 24, 4.0f, 0.07},
-                                         BlackCase{Scheme::ordinates, 24, 0.5f, 0.13},
-                                         BlackCase{Scheme::conservative, 16, 4.0f, 0.13},
-                                         BlackCase{Scheme::conservative, 16, 0.5f, 0.95}),
+                                         BlackCase{Scheme::ordinates, 24, 0.5f, 0.115},
+                                         BlackCase{Scheme::conservative, 16, 4.0f, 0.14},
+                                         BlackCase{Scheme::conservative, 16, 0.5f, 0.75}),
                          [](const auto& test) {
                            return std::string(test.param.scheme == Scheme::ordinates ? "Ordinates" : "Conservative") +
                                   (test.param.half_edge > 1.0f ? "Wall" : "Plate");

@@ -1,4 +1,4 @@
-// The closed box with a small ceiling emitter against its exact radiosity (accuracy.md: closed_box, refine).
+// The closed box with a small ceiling emitter against its exact radiosity (docs/hard-cases.md, "refine").
 #include <gtest/gtest.h>
 
 #include "propagation/bounces.h"
@@ -42,7 +42,7 @@ struct Deviation {
   double rmse_percent, energy;
 };
 
-/// First bounce exact, bounces 2 ... n by the volume (techniques.md, "Composition"): total indirect irradiance.
+/// First bounce exact, bounces 2 ... n by the volume (docs/theory.md#composition): total indirect irradiance.
 Deviation first_bounce_exact(float albedo, int cells, const SchemeOptions& scheme) {
   const BoxSides walls(box(), cells, albedo);
   const VoxelGrid voxels(walls.grid, walls.sides);

@@ -1,5 +1,5 @@
-// A camera close to a virtual light in a corner (accuracy.md: corner): the singularity of a light near a surface must
-// not show.
+// A camera close to a virtual light in a corner (docs/hard-cases.md, "corner"): the singularity of a light near a
+// surface must not show.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -93,7 +93,7 @@ TEST_F(FirstBounce, SumOfLights) {
       record("sum_" + name_of(mode) + "_stride_" + std::to_string(stride), deviation);
       // 0.1 is asked for. Which pixels are gathered again depends on how much light there is (0.20 measured); negative
       // lights are chosen for all lights together, and what they take ends at zero.
-      const double limit = mode == Gi("negative") ? 2.0 : stride == 1 ? 0.1 : 0.25;
+      const double limit = mode == Gi("negative") ? 2.0 : stride == 1 ? 0.1 : 0.22;
       EXPECT_LT(deviation, limit) << name_of(mode) << ' ' << stride;
     }
   }
@@ -154,7 +154,7 @@ TEST_F(FirstBounce, Range) {
       for (const float factor : {1e-6f, 1e-3f, 1e4f, 1e9f}) {
         const double rmse = rmse_percent(picture(brighter(scene, factor), o), ref, double(factor));
         record(std::string("range_") + name + "_" + name_of(mode) + "_" + std::to_string(std::log10(factor)), rmse);
-        EXPECT_LT(rmse, mode == Gi("vpl") ? 0.1 : 1.0) << name << ' ' << name_of(mode) << " x " << factor;
+        EXPECT_LT(rmse, mode == Gi("vpl") ? 0.1 : 0.6) << name << ' ' << name_of(mode) << " x " << factor;
       }
     }
     FrameOptions o = options(Gi("vpl"), 48);

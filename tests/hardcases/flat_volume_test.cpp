@@ -1,4 +1,5 @@
-// Scenes without extent along an axis have one layer of cells (accuracy.md: shape): what `volgi export` makes of them.
+// Scenes without extent along an axis have one layer of cells (docs/hard-cases.md, "shape"): what `volgi export` makes
+// of them.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

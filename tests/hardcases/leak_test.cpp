@@ -1,5 +1,5 @@
-// The dark room of thin_wall (accuracy.md: thin) where pictures_test.cpp and hybrid_test.cpp do not look: by the
-// `conservative` scheme, and at 128 cells.
+// The dark room of thin_wall (docs/hard-cases.md, "thin") where pictures_test.cpp and hybrid_test.cpp do not look: by
+// the `conservative` scheme, and at 128 cells.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -83,8 +83,8 @@ TEST_F(Leak, ThinWallAt128Cells) {
 }
 
 // `val` has no grid, and no other test of its own.
-TEST_F(Leak, ThinWallByAreaLights) {
-  if (tested_backend() == screen::Backend::cpu) return;  // no volume: the same passes
+TEST_F(Leak, ThinWallByAreaLightsOnGpuOnly) {
+  if (const char* reason = reason_to_skip(TestedOn::gpu_only, context())) GTEST_SKIP() << reason;
   screen::FrameOptions o = options(16, 0.0f);
   o.recipe = "val";
   expect_below(0.005, o, "val");

@@ -1,6 +1,6 @@
-// Rooms that are long, thin or flat (accuracy.md: shape): how far pictures of ducts are from paths, that boxes of
-// 100:1:1 and scenes of one layer of cells show something sane, and that the twins agree on them. Flat scenes in files:
-// flat_volume_test.cpp.
+// Rooms that are long, thin or flat (docs/hard-cases.md, "shape"): how far pictures of ducts are from paths, that boxes
+// of 100:1:1 and scenes of one layer of cells show something sane, and that the twins agree on them. Flat scenes in
+// files: flat_volume_test.cpp.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -84,18 +84,18 @@ struct DuctCase {
 };
 
 // At the lit end, where most of the light is, a duct of four cells or more is as good as a cube of as many. Where
-// little of it arrives the few directions of `ordinates` show, and there the row is not met; limits are what was
-// measured: of hybrid 1.81, 0.82, 1.12, 0.90 times the light by the CPU's volume for 1, 2, 4, 8 cells; 1.94,
-// 0.97, 1.23, 0.98 by the GPU's; of volume 2.13, 0.92, 1.38, 1.06 by both. Errors at the lit end: hybrid
-// 11, 9.9, 5.7, 4.1 % (cubes of 4 and 8 cells: 5.1 and 4.6) and 8.6, 3.0, 2.8, 2.8 % (1.8 and 2.6); volume
-// 23, 8.6, 3.2, 1.9 %.
+// little of it arrives the few directions of `ordinates` show, and there the limit is what was measured: of
+// hybrid 1.87, 0.89, 1.15, 0.90 times the light by the CPU's volume for 1, 2, 4, 8 cells; 1.94, 0.96, 1.23, 0.98 by the
+// GPU's; of volume 2.13, 0.92, 1.38, 1.06 by both (docs/results/where-we-miss.md). Errors at the lit end:
+// hybrid 8.6, 2.9, 3.4, 3.7 % (twice the cube's: 3.5 and 5.0 for 4 and 8 cells) and 8.7, 3.0, 2.8, 2.8 % (3.7 and 5.4);
+// volume 23, 8.6, 3.2, 1.9 %.
 TEST_F(Shape, Ducts) {
   const Scene cube = duct(1.0f), scene = duct(8.0f);
   const Camera lit_end = from_lit_end(scene), dark_end = from_dark_end(scene);
   // The noise of a pixel at the dark end is half of its light: its mean is all that counts.
   const Judge of_cube(cube, from_lit_end(cube), 64), of_lit(scene, lit_end, 64), of_dark(scene, dark_end, 128);
-  for (const DuctCase& c : {DuctCase{1, 12.0, 24.0, {1.7, 2.05}, {2.0, 2.25}},
-                            {2, 11.0, 9.5, {0.77, 1.03}, {0.87, 0.98}},
+  for (const DuctCase& c : {DuctCase{1, 9.5, 24.0, {1.7, 2.05}, {2.0, 2.25}},
+                            {2, 3.4, 9.5, {0.77, 1.03}, {0.87, 0.98}},
                             {4, 0.0, 4.0, {1.05, 1.3}, {1.3, 1.45}},
                             {8, 0.0, 2.5, {0.85, 1.03}, {1.0, 1.1}}}) {
     for (Gi mode : {Gi("hybrid"), Gi("volume")}) {
@@ -174,8 +174,8 @@ TEST_F(Shape, FlatScenes) {
   }
 }
 
-TEST_F(Shape, TwinsAgree) {
-  if (tested_backend() == screen::Backend::cpu) return;  // both are in it
+TEST_F(Shape, TwinsAgreeOnGpuOnly) {
+  if (tested_backend() == screen::Backend::cpu) GTEST_SKIP() << "both backends are in it";
   const Scene flat = square_across(1), rod = room({100, 1, 1}, glm::vec3(0.05f)),
               sheet = room({100, 1, 100}, {0.05f, 0.05f, 0.05f});
   for (Scheme scheme : {Scheme::ordinates, Scheme::conservative}) {

@@ -1,5 +1,5 @@
 // End to end, from a scene to the power that its sides send: the GPU's volume, lit through shadow maps, against the
-// CPU's, lit by rays (accuracy.md: twin). Stage by stage: tests/crosscheck.
+// CPU's, lit by rays (docs/hard-cases.md, "twin"). Stage by stage: tests/crosscheck.
 #include <gtest/gtest.h>
 
 #include <filesystem>

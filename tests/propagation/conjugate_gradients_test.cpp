@@ -24,7 +24,7 @@ double rms_error(const Powers& a, const Powers& b) {
   return worst;
 }
 
-// techniques.md: passes to 1 % and to 0.1 %. Theirs are one more: the bounce that ends them is free here.
+// Passes that a prototype took to 1 % and to 0.1 %. Theirs are one more: the bounce that ends them is free here.
 TEST(ConjugateGradients, FewPasses) {
   struct Case {
     int rooms;

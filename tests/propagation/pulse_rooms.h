@@ -201,7 +201,7 @@ void over_sphere(const F& f) {
   }
 }
 
-/// sqrt(4 pi) Y_lm, from the definitions (conventions: no Condon-Shortley sign).
+/// sqrt(4 pi) Y_lm, from the definitions (no Condon-Shortley sign: docs/conventions.md#spherical-harmonics).
 inline void basis_at(glm::dvec3 d, double b[9]) {
   b[0] = 1.0;
   b[1] = std::sqrt(3.0) * d.y;

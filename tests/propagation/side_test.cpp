@@ -1,4 +1,4 @@
-// What sides send, return and read as irradiance (conventions, "Volume quantities").
+// What sides send, return and read as irradiance (docs/conventions.md#volume-quantities).
 #include <gtest/gtest.h>
 
 #include <glm/glm.hpp>

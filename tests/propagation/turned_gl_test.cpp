@@ -1,4 +1,4 @@
-// Voxels turned by 90 degrees about an axis give the same numbers (accuracy, "rotate").
+// Voxels turned by 90 degrees about an axis give the same numbers (docs/hard-cases.md, "rotate").
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -156,13 +156,13 @@ TEST_P(Furnace, RadianceIsEmissionOverOneMinusAlbedo) {
   options.size = {16, 16};
   options.samples_per_pixel = 256;
   const ReferencePicture picture = path_trace(scene, camera_at({0.3f, 0.2f, 0.1f}, {-1, -1, -0.7f}, 1.2f), options);
-  EXPECT_NEAR(mean(picture.color) * (1 - static_cast<double>(albedo)), 1.0, 0.004);
+  EXPECT_NEAR(mean(picture.color) * (1 - static_cast<double>(albedo)), 1.0, albedo < 0.99f ? 0.004 : 0.02);
   options.max_bounces = 2;  // plus the arrival of emission, which is bounce 0, and emission itself
   const double a = albedo, geometric = 1 + a + a * a + a * a * a;
   EXPECT_NEAR(mean(path_trace(scene, camera_at({0.3f, 0.2f, 0.1f}, {-1, -1, -0.7f}, 1.2f), options).color), geometric,
               0.004 * geometric);
 }
-INSTANTIATE_TEST_SUITE_P(ClosedForms, Furnace, testing::Values(0.0f, 0.5f, 0.8f, 0.95f));
+INSTANTIATE_TEST_SUITE_P(ClosedForms, Furnace, testing::Values(0.0f, 0.5f, 0.8f, 0.95f, 0.99f));
 
 // A point light in the middle of a sphere: E = I/r², every order is the one before times the albedo.
 TEST(ClosedForms, SphericalCavity) {

@@ -89,7 +89,7 @@ inline GatherOptions every_pixel() {
   return o;
 }
 
-/// What one light gives a pixel, no visibility: conventions.md, "VPL".
+/// What one light gives a pixel, no visibility: docs/conventions.md#virtual-lights.
 inline glm::dvec3 irradiance_of(const VirtualLight& light, const Seen& seen, size_t pixel) {
   const glm::dvec3 w = glm::dvec3(light.position) - glm::dvec3(seen.position[pixel]);
   const double squared = glm::dot(w, w);

@@ -33,6 +33,22 @@ inline screen::Backend tested_backend() {
   return name != nullptr && std::string_view(name) == "cpu" ? screen::Backend::cpu : screen::Backend::gpu;
 }
 
+/// Where a test has something to say. One that skips elsewhere has it in its name, OnGpuOnly or NotInSoftware: `run`
+/// takes every other skip of a test that needs OpenGL for a failure.
+enum class TestedOn { both, gpu_only, not_in_software };
+/// The reason to skip, for GTEST_SKIP; null where there is none.
+inline const char* reason_to_skip(TestedOn where, const gl::Context& context) {
+  const bool on_gpu = tested_backend() == screen::Backend::gpu;
+  if (where == TestedOn::gpu_only && !on_gpu)
+    return "no volume on the CPU in it: the other backend has tested the same passes";
+  if (where == TestedOn::not_in_software && on_gpu && context.software())
+    return "the GPU's volume would take minutes in software; the CPU's is tested";
+  return nullptr;
+}
+inline const char* name_ending(TestedOn where) {
+  return where == TestedOn::both ? "" : where == TestedOn::gpu_only ? "OnGpuOnly" : "NotInSoftware";
+}
+
 /// Small pictures by the tested backend.
 inline screen::FrameOptions picture_options(Gi gi, glm::ivec2 size, screen::LightPart light = screen::LightPart::full) {
   screen::FrameOptions o;

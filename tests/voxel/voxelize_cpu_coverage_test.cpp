@@ -98,7 +98,7 @@ TEST(VoxelizeCpu, AreasOfTiltedSquares) {
     }
   }
   EXPECT_NEAR(sum / kCount, 1.0, 0.003);
-  EXPECT_LT(worst, 0.03);  // 16 cells wide, counted by thirds of a cell at the rim: one row more is 2 %
+  EXPECT_LT(worst, 0.028);  // 16 cells wide, counted by thirds of a cell at the rim: one row more is 2 %
   RecordProperty("mean_ratio", std::to_string(sum / kCount));
   RecordProperty("worst", std::to_string(worst));
 }

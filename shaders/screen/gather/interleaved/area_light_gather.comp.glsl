@@ -1,6 +1,6 @@
 #version 450 core
 // Irradiance of virtual lights, each as far as its area light is visible: Dong et al. 2009, section 4; we take the
-// disk-to-point form of conventions.md, "VPL".
+// disk-to-point form of docs/conventions.md#virtual-lights.
 // Every interleave-th pixel in both directions takes one subset of the lights, times the number of subsets; with
 // interleave 1, and LISTED (the pixels of a list), all of the lights, and the sum ends in radiance.
 #include "shared/disk_to_point.glsl"

@@ -1,7 +1,7 @@
 #version 450 core
-// Irradiance of virtual lights, without visibility, at pixels of the G-buffer: conventions.md, "VPL" (the disk-to-point
-// form of Nichols 2010, eq. 4.1), less what negative lights take away. A dispatch takes one block of lights; the first
-// begins the sum, the last ends it.
+// Irradiance of virtual lights, without visibility, at pixels of the G-buffer: the disk-to-point
+// form (docs/conventions.md#virtual-lights), less what negative lights take away. A dispatch takes one block of lights;
+// the first begins the sum, the last ends it.
 // LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
 #include "shared/disk_to_point.glsl"
 #include "screen/base/gbuffer.glsl"

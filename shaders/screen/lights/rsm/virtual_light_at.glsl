@@ -97,7 +97,7 @@ bool meet(ReflectiveShadowLayer view, int resolution, int layer, vec2 uv, ivec2 
 }
 
 // Squared distance to the light over the cosine at the surface: turns a solid angle into area; of a sun, the inverse
-// cosine. conventions.md, "VPL": cosines below 0.05 would make lights that stand for surface far away.
+// cosine. docs/conventions.md#virtual-lights: cosines below 0.05 would make lights that stand for surface far away.
 float area_of_measure(ReflectiveShadowLayer view, Meeting meeting) {
   vec3 from_light = view.directional != 0 ? view.forward : meeting.position - view.origin;
   float squared = dot(from_light, from_light);

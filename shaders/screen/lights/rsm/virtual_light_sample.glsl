@@ -1,5 +1,5 @@
 // The virtual light that stands for one part of what a punctual light sends. Cochran and Steele 2007, §3.1; flux and
-// area: conventions.md, "VPL".
+// area: docs/conventions.md#virtual-lights.
 #include "shared/constants.glsl"
 #include "screen/lights/rsm/virtual_light_at.glsl"
 
