@@ -1,6 +1,7 @@
 #version 450 core
 // What every side reflects of the virtual lights: A rho E [W]. Lights come in the order of their area lights, so that
 // each one's shadow is looked up once.
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
@@ -22,7 +23,7 @@ uniform int light_count;
 const float PI = 3.14159265358979;
 
 void main() {
-  uint s = gl_GlobalInvocationID.x;
+  uint s = global_index();
   if (s >= side_count || s >= uint(sides.length())) return;
   Side side = sides[s];
   vec3 at = vec3(cell_coord(grid, side.cell)) + 0.5;

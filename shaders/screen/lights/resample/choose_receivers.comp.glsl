@@ -1,5 +1,6 @@
 #version 450 core
 // Pixels that stand for the picture: the first 256 points of the Halton sequence of bases 2 and 3.
+#include "shared/global_index.shared.h"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/base/halton_pixel.glsl"
@@ -11,7 +12,7 @@ layout(binding = 1) uniform sampler2D normal_map;
 layout(binding = 2) uniform sampler2D albedo_map;
 
 void main() {
-  uint k = gl_GlobalInvocationID.x;
+  uint k = global_index();
   if (k >= uint(RECEIVERS)) return;
   ivec2 pixel = halton_pixel(k, textureSize(position_map, 0));
   vec4 position = texelFetch(position_map, pixel, 0);
