@@ -65,7 +65,7 @@ void BouncesGl::next_order(const VoxelGridGl& voxels, const gl::Buffer& total, c
   next_order_.use();
   next_order_.set("add_source", int(source != nullptr));
   next_order_.set("already_reflected", int(already_reflected));
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -274,7 +274,7 @@ gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) co
   flux.punctual().bind_storage(9);
   all.bind_storage(10);
   kernel.use();
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return all;
 }

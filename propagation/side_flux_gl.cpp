@@ -43,7 +43,7 @@ void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   lost_.bind_storage(11);
   collect_.use();
   collect_.set("flux_unit", flux_unit_);
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -60,12 +60,12 @@ void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<Fl
     packed.emplace_back(p.flux, 0.0f);
     total += glm::dvec3(p.flux);
   }
-  pieces_ = gl::Buffer(packed);
+  gl::put(pieces_, packed);
   begin_source(voxels, inject_emitters_, float(std::max({total.x, total.y, total.z})));
   pieces_.bind_storage(14);
   inject_emitters_.use();
   inject_emitters_.set("piece_count", int(pieces.size()));
-  gl::dispatch({int(pieces.size()), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(pieces.size(), 64);
   collect(voxels, apart ? emitted_ : punctual_);
 }
 

@@ -23,12 +23,12 @@ void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, co
   raw_direct_.bind_storage(10);
   raw_indirect_.bind_storage(11);
   side_irradiance_.use();
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   direct_.bind_storage(6);
   indirect_.bind_storage(7);
   smooth_.use();
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

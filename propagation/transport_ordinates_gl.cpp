@@ -95,7 +95,7 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
   cell_word_.bind_image(0, GL_WRITE_ONLY);
   side_light_.bind_image(1, GL_WRITE_ONLY);
   prepare_.use();
-  gl::dispatch({std::max(int(capacity_), int(cell_count(grid_))), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(std::max<size_t>(capacity_, cell_count(grid_)), 64);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   shares_.bind_uniform(1);
   cell_word_.bind(1);
@@ -126,7 +126,7 @@ void OrdinatesTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& se
   arrived_.bind(0);
   received.bind_storage(6);
   collect_.use();
-  gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   report.passes += 1;
 }

@@ -11,21 +11,19 @@ namespace volgi {
 namespace {
 
 constexpr int kGroup = 256;                     // cells or faces of a group in coverage, list_sides_*.comp.glsl
+constexpr int kLanes = 32;                      // that share out a group's faces in coverage, list_sides_fill
 constexpr size_t kSurfaceBytes = 2 * 48;        // surfaces.glsl, of a face
 constexpr float kFootprintAlpha = 1.0f / 3.0f;  // cells: alpha belongs to a fine line,
 constexpr float kFootprintAlbedo = 1.0f;        // albedo to a face
 
-/// Groups of `in_group` for `count` cells, faces or sides (shaders/voxel/linear_id.glsl).
-void dispatch_linear(size_t count, size_t in_group) {
-  constexpr size_t kAlongX = 1 << 15;
-  const size_t groups = std::max<size_t>(1, (count + in_group - 1) / in_group);
-  glDispatchCompute(GLuint(std::min(groups, kAlongX)), GLuint((groups + kAlongX - 1) / kAlongX), 1);
+/// One after the other, for cells, faces or sides.
+void dispatch_in_turn(size_t count, size_t group_size) {
+  gl::dispatch_linear(count, group_size);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void fill(const gl::Buffer& buffer, GLuint value) {
-  glClearNamedBufferData(buffer.id(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value);
-}
+/// kLanes invocations to every kGroup of the faces.
+void dispatch_shared_out(size_t count) { dispatch_in_turn((count + kGroup - 1) / kGroup * kLanes, kLanes); }
 
 bool has_alpha(const gl::SceneBuffers& scene) {
   return std::any_of(scene.materials().begin(), scene.materials().end(),
@@ -47,7 +45,6 @@ SlicedVoxelization::SlicedVoxelization(const Grid& grid, VoxelizationMethod meth
       number_(gl::Program::compute("voxel/number_surfaces.comp.glsl")),
       coverage_(gl::Program::compute("voxel/coverage.comp.glsl")),
       count_(gl::Program::compute("voxel/list_sides_count.comp.glsl")),
-      scan_(gl::Program::compute("voxel/list_sides_scan.comp.glsl")),
       offset_(gl::Program::compute("voxel/list_sides_offset.comp.glsl")),
       fill_(gl::Program::compute("voxel/list_sides_fill.comp.glsl")),
       collect_area_(gl::Program::compute("voxel/collect_area.comp.glsl")) {
@@ -112,11 +109,11 @@ void SlicedVoxelization::mark(const gl::SceneBuffers& scene, int first_axis, int
   alpha_ = has_alpha(scene);
   for (int axis = first_axis; axis <= last_axis; ++axis) {
     Family& f = families_[size_t(axis)];
-    fill(f.key_low, 0xffffffffu);
-    fill(f.key_high, 0xffffffffu);
-    fill(f.blocked, 0);
+    f.key_low.fill(0xffffffffu);
+    f.key_high.fill(0xffffffffu);
+    f.blocked.clear();
     if (alpha_ && f.haze.bytes() == 0) f.haze = gl::Buffer(sizeof(std::uint32_t) * faces(voxels_.grid, axis));
-    if (alpha_) fill(f.haze, 0);
+    if (alpha_) f.haze.clear();
   }
   auto& program = mark_[size_t(alpha_)];
   if (!program) program = gl::Program::raster(base_name(), alpha_define(alpha_));
@@ -165,15 +162,14 @@ void SlicedVoxelization::make_room_for_surfaces(int axis) {
 
 void SlicedVoxelization::number_surfaces(int axis) {
   Family& f = families_[size_t(axis)];
-  glClearNamedBufferSubData(wanted_buffer_.id(), GL_R32UI, GLintptr(sizeof(std::uint32_t)) * axis,
-                            sizeof(std::uint32_t), GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  wanted_buffer_.fill(0, 1, size_t(axis));
   f.key_low.bind_storage(0);
   f.entries.bind_storage(1);
   wanted_buffer_.bind_storage(2);
   number_.use();
   number_.set("axis", axis);
   number_.set("capacity", GLuint(f.capacity));
-  dispatch_linear(faces(voxels_.grid, axis), 256);
+  dispatch_in_turn(faces(voxels_.grid, axis), 256);
 }
 
 void SlicedVoxelization::write_surfaces(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
@@ -193,7 +189,7 @@ void SlicedVoxelization::find_coverage() {
     f.key_low.bind_storage(4);
     f.coverage.bind_storage(5);
     coverage_.set("axis", axis);
-    dispatch_linear(faces(voxels_.grid, axis), kGroup);
+    dispatch_shared_out(faces(voxels_.grid, axis));
   }
 }
 
@@ -202,16 +198,19 @@ void SlicedVoxelization::list_sides() {
   voxels_.cell_sides.bind_storage(3);
   group_totals_.bind_storage(4);
   count_.use();
-  dispatch_linear(cell_count(voxels_.grid), kGroup);
-  wanted_buffer_.bind_storage(2);
-  scan_.use();
-  scan_.set("groups", groups_);
-  dispatch_linear(1, 1);
+  dispatch_in_turn(cell_count(voxels_.grid), kGroup);
+  const gl::Buffer& sides = scan_.run(group_totals_, size_t(groups_));
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glCopyNamedBufferSubData(sides.id(), wanted_buffer_.id(), 0, 3 * sizeof(std::uint32_t), sizeof(std::uint32_t));
   make_room_for_sides();
+  voxels_.grid_block.bind_uniform(0);
+  wanted_buffer_.bind_storage(2);
+  voxels_.cell_sides.bind_storage(3);
+  group_totals_.bind_storage(4);
   voxels_.side_count.bind_storage(5);
   offset_.use();
   offset_.set("capacity", GLuint(voxels_.side_capacity));
-  dispatch_linear(cell_count(voxels_.grid), kGroup);
+  dispatch_in_turn(cell_count(voxels_.grid), kGroup);
 }
 
 void SlicedVoxelization::make_room_for_sides() {
@@ -235,7 +234,7 @@ void SlicedVoxelization::fill_sides() {
     f.surfaces.bind_storage(1);
     f.coverage.bind_storage(2);
     fill_.set("axis", axis);
-    dispatch_linear(faces(voxels_.grid, axis), kGroup);
+    dispatch_shared_out(faces(voxels_.grid, axis));
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -252,12 +251,12 @@ void SlicedVoxelization::count_area(const gl::SceneBuffers& scene) {
   scene.draw(*program);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   collect_area_.use();
-  dispatch_linear(voxels_.side_capacity, 64);
+  dispatch_in_turn(voxels_.side_capacity, 64);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 size_t SlicedVoxelization::bytes() const {
-  size_t sum = voxels_.bytes() + wanted_buffer_.bytes() + group_totals_.bytes() + area_fixed_.bytes();
+  size_t sum = voxels_.bytes() + wanted_buffer_.bytes() + group_totals_.bytes() + scan_.bytes() + area_fixed_.bytes();
   for (const Family& f : families_) {
     for (const gl::Buffer* b : {&f.key_low, &f.key_high, &f.blocked, &f.haze, &f.entries, &f.surfaces, &f.coverage}) {
       sum += b->bytes();

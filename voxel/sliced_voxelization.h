@@ -6,6 +6,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "core/gl/readback.h"
+#include "core/gl/scan.h"
 #include "core/gl/scene_buffers.h"
 #include "voxel/voxel_grid_gl.h"
 
@@ -76,7 +77,8 @@ class SlicedVoxelization {
   VoxelizationMethod method_;
   std::array<std::optional<gl::Program>, 2> mark_, side_area_;  // without and with alpha, made when needed
   gl::Program write_;
-  gl::Program number_, coverage_, count_, scan_, offset_, fill_, collect_area_;
+  gl::Program number_, coverage_, count_, offset_, fill_, collect_area_;
+  gl::Scan scan_;
   VoxelGridGl voxels_;
   std::array<Family, 3> families_;
   gl::Buffer wanted_buffer_;  // Wanted

@@ -13,6 +13,7 @@
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
 #include "apps/volgi/commands.h"
+#include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_stats.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
@@ -44,7 +45,7 @@ struct BenchCommand {
   int grid_cells = 32;
   int iterations = 64;
   bool json = false;
-  std::optional<int> device;
+  DeviceOptions device;
 
   int largest_grid = 128;
 
@@ -84,7 +85,7 @@ nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme,
 }
 
 void BenchCommand::run_frames(nlohmann::json& results) const {
-  gl::Context context(device);
+  gl::Context context(device.context);
   for (const std::string& name : scenes_or({"cornell", "atrium"})) {
     for (auto scheme : {Scheme::conservative, Scheme::ordinates}) {
       nlohmann::json r = bench_frame(name, scheme, context);
@@ -145,14 +146,14 @@ void BenchCommand::run_voxelize(nlohmann::json& results) const {
 }
 
 void BenchCommand::run_cochran2007(nlohmann::json& results) const {
-  const gl::Context context(device);
+  const gl::Context context(device.context);
   nlohmann::json& r = results["cochran2007"];
   r = bench_cochran2007(scene("bunny"), context, frames);
   if (!json) fmt::print("{}", cochran2007_table(r));
 }
 
 void BenchCommand::run_dong2009(nlohmann::json& results) const {
-  const gl::Context context(device);
+  const gl::Context context(device.context);
   Dong2009Options options;
   options.scenes = options.curve_scenes = scenes;
   options.size = size.value_or(options.size);
@@ -166,7 +167,7 @@ void BenchCommand::run_dong2009(nlohmann::json& results) const {
 }
 
 void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
-  const gl::Context context(device);
+  const gl::Context context(device.context);
   AgainstPathTracingOptions options;
   options.size = size.value_or(options.size);
   options.frames = frames;
@@ -248,7 +249,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--iterations", options->iterations, "passes over the volume")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  command->add_option("--device", options->device, "number of the EGL device");
+  options->device.add_to(*command);
   command->add_flag("--json", options->json, "print JSON");
   command->footer("Example: volgi bench frame --frames 5");
   command->callback([options, &exit_code] { exit_code = options->run(); });

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/device_options.h"
 #include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
@@ -20,7 +21,7 @@ struct CrosscheckCommand {
   std::filesystem::path scene_path;
   VolumeCommandOptions volume;
   std::vector<int> passes = {1, 8, 64};
-  std::optional<int> device;
+  DeviceOptions device;
   bool json = false;
 
   int run() const;
@@ -51,7 +52,7 @@ int CrosscheckCommand::run() const {
   volume.limit_threads();
   const VolumeOptions options = volume.volume_options();
   const Scene scene = load_scene(scene_path);
-  gl::Context context(device);
+  const gl::Context context(device.context);
   const std::vector<CrosscheckRow> rows = crosscheck(scene, options, passes);
   const bool passed = std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.passed(); });
   if (json) {
@@ -81,7 +82,7 @@ void add_crosscheck_command(CLI::App& app, int& exit_code) {
   command->add_option("--passes", options->passes, "passes over the volume after which to compare")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option("--device", options->device, "number of the EGL device");
+  options->device.add_to(*command);
   command->add_flag("--json", options->json, "print JSON");
   command->footer("Example: volgi crosscheck data/cornell.glb --grid 32 --scheme ordinates");
   command->callback([options, &exit_code] { exit_code = options->run(); });

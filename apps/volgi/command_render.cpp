@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_options.h"
 #include "apps/volgi/frame_stats.h"
 #include "apps/volgi/frame_times.h"
@@ -36,7 +37,7 @@ struct RenderCommand {
   bool quiet = false;
   int frames = 1;
   std::string animate;  // T0:T1:FPS; empty: one picture
-  std::optional<int> device;
+  DeviceOptions device;
 
   int run() const;
 
@@ -151,7 +152,7 @@ int RenderCommand::run() const {
   const WorldBox box = box_of(source, times);
   Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
   scene.camera(loaded);  // says so now if there is none
-  const gl::Context context(device);
+  const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   screen::Frame picture(loaded, options);
   for (const std::string& line : picture.announcements()) {
@@ -201,8 +202,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->excludes(animate);
-  command->add_option("--device", options->device,
-                      "number of the EGL device (the first hardware device, else software)");
+  options->device.add_to(*command);
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
   command->add_option("--dump", options->dump,
                       "folder for what the last frame was lit by: virtual_lights.json, for reference --vpls");

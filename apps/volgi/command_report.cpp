@@ -17,6 +17,7 @@
 #include "apps/report/summary.h"
 #include "apps/report/texts.h"
 #include "apps/volgi/commands.h"
+#include "apps/volgi/device_options.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -32,7 +33,8 @@ struct ReportOptions {
   std::vector<std::string> scenes, techniques;
   fs::path output, data = "data", sweep_file, summary;
   std::string size;
-  std::optional<int> frames, device;
+  std::optional<int> frames;
+  DeviceOptions device;
   int repeat = 0;
   bool quick = false, page_only = false, quiet = false;
 };
@@ -140,7 +142,7 @@ int run(const ReportOptions& options, const std::string& command) {
     write_report(Report(command, std::move(points)), options);
     return int(ExitCode::done);
   }
-  gl::Context gl(options.device);
+  gl::Context gl(options.device.context);
   const MeasureContext context{gl, standard_renderers(), options.output, size, sweep.frames};
   if (options.repeat > 0) return print_repeated(repeat_points(scenes, sweep, context, file, options.repeat));
   write_report(Report(command, collect_points(scenes, sweep, context, file)), options);
@@ -171,7 +173,7 @@ void add_options(CLI::App& command, ReportOptions& o) {
   command.add_option("--frames", o.frames, "timed frames a point, after two warm-up frames [that of the sweep]")
       ->check(CLI::Range(1, 100000));
   command.add_option("--data", o.data, "folder with scenes.json and the stored references")->capture_default_str();
-  command.add_option("--device", o.device, "number of the EGL device (the first hardware device, else software)");
+  o.device.add_to(command);
   command.add_option("--summary", o.summary, "also a Markdown summary, with a folder of pictures beside it")
       ->type_name("FILE.md");
   command

@@ -5,10 +5,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdio>
+#include <map>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/error.h"
+#include "core/gl/limits.h"
+#include "core/gl/objects.h"
 
 namespace volgi::gl {
 namespace {
@@ -104,32 +110,77 @@ EGLConfig choose_config(EGLDisplay display) {
   return nullptr;
 }
 
+/// A context, and what is known of it.
+struct State {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  EGLSurface surface = EGL_NO_SURFACE;
+  State* before = nullptr;  // current when this one was made
+  int errors = 0;
+  std::string first_error;  // since the last throw
+  std::map<std::pair<GLenum, std::optional<GLuint>>, GLint64> limits;
+  GLuint empty_vertex_array = 0;  // ends with the context
+};
+thread_local State* current = nullptr;
+
+State& current_state() {
+  assert(current != nullptr && "OpenGL without a gl::Context on this thread");
+  return *current;
+}
+
 void GLAPIENTRY on_debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                                  const void* user) {
   if (severity != GL_DEBUG_SEVERITY_HIGH && type != GL_DEBUG_TYPE_ERROR) return;
-  ++*static_cast<int*>(const_cast<void*>(user));
-  std::fprintf(stderr, "volgi: OpenGL: %.*s\n", length, text);
+  State& state = *static_cast<State*>(const_cast<void*>(user));
+  ++state.errors;
+  const std::string_view message(text, length < 0 ? std::string_view(text).size() : size_t(length));
+  if (state.first_error.empty()) state.first_error = message;
+  std::fprintf(stderr, "volgi: OpenGL: %.*s\n", int(message.size()), message.data());
+}
+
+std::string error_name(GLenum error) {
+  switch (error) {
+    case GL_INVALID_ENUM:
+      return "GL_INVALID_ENUM";
+    case GL_INVALID_VALUE:
+      return "GL_INVALID_VALUE";
+    case GL_INVALID_OPERATION:
+      return "GL_INVALID_OPERATION";
+    case GL_INVALID_FRAMEBUFFER_OPERATION:
+      return "GL_INVALID_FRAMEBUFFER_OPERATION";
+    case GL_OUT_OF_MEMORY:
+      return "GL_OUT_OF_MEMORY";
+    default:
+      return "error " + std::to_string(error);
+  }
+}
+
+/// Empties the driver's list of errors. @returns the first; a lost context repeats its own for ever.
+GLenum take_errors() {
+  constexpr int most = 16;
+  const GLenum first = glGetError();
+  for (int i = 0; i < most && first != GL_NO_ERROR && glGetError() != GL_NO_ERROR; ++i) {
+  }
+  return first;
 }
 
 }  // namespace
 
 struct Context::Data {
-  EGLDisplay display = EGL_NO_DISPLAY;
-  EGLContext context = EGL_NO_CONTEXT;
-  EGLSurface surface = EGL_NO_SURFACE;
+  State state;
   std::string name;
   std::string version;
-  int errors = 0;
 
-  bool open(EGLDisplay on_display);
+  bool open(EGLDisplay on_display, bool debug);
   void close();
+  void watch();
   ~Data() { close(); }
 };
 
-bool Context::Data::open(EGLDisplay on_display) {
+bool Context::Data::open(EGLDisplay on_display, bool debug) {
   if (on_display == EGL_NO_DISPLAY || eglInitialize(on_display, nullptr, nullptr) == EGL_FALSE) return false;
-  display = on_display;
-  const EGLConfig config = choose_config(display);
+  state.display = on_display;
+  const EGLConfig config = choose_config(on_display);
   if (config == nullptr || eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return false;
   const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION_KHR,
                                          4,
@@ -138,16 +189,17 @@ bool Context::Data::open(EGLDisplay on_display) {
                                          EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
                                          EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
                                          EGL_CONTEXT_FLAGS_KHR,
-                                         EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR,
+                                         debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
                                          EGL_NONE};
-  context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
-  if (context == EGL_NO_CONTEXT) return false;
-  if (!has_word(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
+  state.context = eglCreateContext(on_display, config, EGL_NO_CONTEXT, attributes.data());
+  if (state.context == EGL_NO_CONTEXT) return false;
+  if (!has_word(eglQueryString(on_display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
     const std::array<EGLint, 5> size{EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
-    surface = eglCreatePbufferSurface(display, config, size.data());
-    if (surface == EGL_NO_SURFACE) return false;
+    state.surface = eglCreatePbufferSurface(on_display, config, size.data());
+    if (state.surface == EGL_NO_SURFACE) return false;
   }
-  if (eglMakeCurrent(display, surface, surface, context) == EGL_FALSE) return false;
+  if (eglMakeCurrent(on_display, state.surface, state.surface, state.context) == EGL_FALSE) return false;
+  state.before = std::exchange(current, &state);
   name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
   return true;
@@ -155,14 +207,27 @@ bool Context::Data::open(EGLDisplay on_display) {
 
 // The display itself stays initialised: EGL hands the same one to every context on the device, without counting.
 void Context::Data::close() {
-  if (context != EGL_NO_CONTEXT) {
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    eglDestroyContext(display, context);
+  for (State* later = current; later != nullptr; later = later->before) {
+    if (later->before == &state) later->before = state.before;
   }
-  if (surface != EGL_NO_SURFACE) eglDestroySurface(display, surface);
-  display = EGL_NO_DISPLAY;
-  context = EGL_NO_CONTEXT;
-  surface = EGL_NO_SURFACE;
+  if (current == &state) {
+    current = state.before;
+    if (current != nullptr) {
+      eglMakeCurrent(current->display, current->surface, current->surface, current->context);
+    } else {
+      eglMakeCurrent(state.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    }
+  }
+  if (state.context != EGL_NO_CONTEXT) eglDestroyContext(state.display, state.context);
+  if (state.surface != EGL_NO_SURFACE) eglDestroySurface(state.display, state.surface);
+  state = {};
+}
+
+void Context::Data::watch() {
+  glEnable(GL_DEBUG_OUTPUT);
+  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+  glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
+  glDebugMessageCallback(on_debug_message, &state);
 }
 
 namespace {
@@ -200,12 +265,12 @@ std::vector<Candidate> candidates(const ClientFunctions& egl, std::optional<int>
 
 }  // namespace
 
-Context::Context(std::optional<int> device_index) : data_(std::make_unique<Data>()) {
+Context::Context(const ContextOptions& options) : data_(std::make_unique<Data>()) {
   const ClientFunctions egl = client_functions();
   bool open = false;
-  for (const Candidate& c : candidates(egl, device_index)) {
+  for (const Candidate& c : candidates(egl, options.device)) {
     if (egl.get_platform_display == nullptr) break;
-    open = data_->open(egl.get_platform_display(c.platform, c.native, nullptr)) &&
+    open = data_->open(egl.get_platform_display(c.platform, c.native, nullptr), options.debug) &&
            !(c.hardware && is_software(data_->name));
     if (open) break;
     data_->close();
@@ -215,10 +280,9 @@ Context::Context(std::optional<int> device_index) : data_(std::make_unique<Data>
                 "no OpenGL 4.5 core context through EGL; install a driver (on Debian libegl-mesa0 and libgl1-mesa-dri) "
                 "or use --backend cpu");
   }
-  glEnable(GL_DEBUG_OUTPUT);
-  glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
-  glDebugMessageControl(GL_DONT_CARE, GL_DONT_CARE, GL_DEBUG_SEVERITY_NOTIFICATION, 0, nullptr, GL_FALSE);
-  glDebugMessageCallback(on_debug_message, &data_->errors);
+  const std::string shortage = first_shortage(needed_limits(), [](GLenum name) { return limit(name); });
+  if (!shortage.empty()) throw Error(ExitCode::no_device, data_->name + ": " + shortage + "; try another --device");
+  if (options.debug) data_->watch();
 }
 
 Context::~Context() = default;
@@ -226,17 +290,47 @@ Context::~Context() = default;
 const std::string& Context::device_name() const { return data_->name; }
 const std::string& Context::version() const { return data_->version; }
 bool Context::software() const { return is_software(data_->name); }
-int Context::debug_errors() const { return data_->errors; }
+int Context::debug_errors() const { return data_->state.errors; }
 
 bool current_is_software() {
   const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return renderer == nullptr || is_software(renderer);
 }
 
-std::vector<std::string> list_devices() {
-  std::vector<std::string> lines;
-  for (const Device& d : devices(client_functions())) lines.push_back(d.name);
-  return lines;
+void throw_on_error() {
+  State& state = current_state();
+  const GLenum error = take_errors();
+  std::string text = std::exchange(state.first_error, {});
+  if (text.empty() && error != GL_NO_ERROR) text = error_name(error) + "; --gl-debug says where";
+  if (text.empty()) return;
+  throw Error(ExitCode::no_device, "OpenGL reports an error, and the result would be wrong: " + text);
+}
+
+bool out_of_memory() {
+  State& state = current_state();
+  const GLenum error = glGetError();
+  if (error == GL_OUT_OF_MEMORY) {
+    state.first_error.clear();
+  } else if (error != GL_NO_ERROR && state.first_error.empty()) {
+    state.first_error = error_name(error);
+  }
+  return error == GL_OUT_OF_MEMORY;
+}
+
+GLuint empty_vertex_array() {
+  State& state = current_state();
+  if (state.empty_vertex_array == 0) {
+    glCreateVertexArrays(1, &state.empty_vertex_array);
+    count_object();
+  }
+  return state.empty_vertex_array;
+}
+
+GLint64 limit(GLenum name, std::optional<GLuint> index) {
+  const auto [known, added] = current_state().limits.try_emplace({name, index}, 0);
+  if (added && index) glGetInteger64i_v(name, *index, &known->second);
+  if (added && !index) glGetInteger64v(name, &known->second);
+  return known->second;
 }
 
 }  // namespace volgi::gl

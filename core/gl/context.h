@@ -2,18 +2,23 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace volgi::gl {
 
+struct ContextOptions {
+  std::optional<int> device = {};  // as EGL numbers them; none: the first hardware device that works, else software
+  bool debug = false;         // GL says what is wrong where it is wrong; slower on some drivers
+};
+
 /// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL: device platform for
-/// hardware first, then Mesa's surfaceless platform, then a software device (llvmpipe).
-/// @param device_index as list_devices() numbers them; none: the first hardware device that works, else software.
-/// @throws Error(no_device) when nothing gives a 4.5 core context; Error(usage) when the index does not exist.
-/// Debug output is synchronous; high-severity messages and GL errors are counted (debug_errors) and printed on stderr.
+/// hardware first, then Mesa's surfaceless platform, then a software device (llvmpipe). The context that was current
+/// before is current again when this one ends.
+/// @throws Error(no_device) when nothing gives a 4.5 core context, or its limits are below what the passes need
+///   (core/gl/limits.h); Error(usage) when the device does not exist.
+/// With `debug`, messages of high severity and of errors are counted, printed on stderr, and thrown by throw_on_error.
 class Context {
  public:
-  explicit Context(std::optional<int> device_index = std::nullopt);
+  explicit Context(const ContextOptions& options = {});
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
@@ -21,7 +26,7 @@ class Context {
   const std::string& device_name() const;  // GL_RENDERER
   const std::string& version() const;      // GL_VERSION
   bool software() const;     // llvmpipe, softpipe, swrast: timer queries lie (docs/conventions.md#statistics)
-  int debug_errors() const;  // high-severity or error-type messages so far
+  int debug_errors() const;  // high-severity or error-type messages so far; 0 without `debug`
 
  private:
   struct Data;
@@ -31,7 +36,16 @@ class Context {
 /// Whether the context that is current on this thread is a software rasterizer.
 bool current_is_software();
 
-/// One line per device that EGL reports, in the order of --device.
-std::vector<std::string> list_devices();
+/// Ends what must not go on after an OpenGL error: its result would be wrong. Called where results leave the GPU, at
+/// the end of frames and in downloads, never from within the driver.
+/// @throws Error(no_device) with the first error since the last call, from debug messages or glGetError.
+void throw_on_error();
+
+/// Whether the last command ran out of memory. Such an error is forgotten, as the caller says it better; others wait
+/// for throw_on_error().
+bool out_of_memory();
+
+/// A vertex array without attributes, made once for each context: the core profile draws only with one bound.
+unsigned empty_vertex_array();
 
 }  // namespace volgi::gl

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <string>
 
 #include "core/error.h"
+#include "core/gl/context.h"
+#include "core/gl/limits.h"
 
 namespace volgi::gl {
 
@@ -15,18 +18,18 @@ void delete_buffer(GLuint id) { glDeleteBuffers(1, &id); }
 void delete_texture(GLuint id) { glDeleteTextures(1, &id); }
 void delete_framebuffer(GLuint id) { glDeleteFramebuffers(1, &id); }
 void delete_vertex_array(GLuint id) { glDeleteVertexArrays(1, &id); }
-void delete_sampler(GLuint id) { glDeleteSamplers(1, &id); }
+
+namespace {
+std::atomic<std::uint64_t> made = 0;
+}
+
+std::uint64_t objects_made() { return made; }
+void count_object(std::uint64_t objects) { made += objects; }
 
 namespace {
 
-GLint64 limit(GLenum name) {
-  GLint64 value = 0;
-  glGetInteger64v(name, &value);
-  return value;
-}
-
 void throw_if_out_of_memory(const std::string& what) {
-  if (glGetError() == GL_OUT_OF_MEMORY) {
+  if (out_of_memory()) {
     throw Error(ExitCode::over_limit, "the GPU has no memory for " + what + "; use a smaller grid or picture");
   }
 }
@@ -76,6 +79,7 @@ template <class T>
 std::vector<float> read_texture(GLuint id, GLenum format, GLenum type, size_t count) {
   std::vector<T> values(count);
   glGetTextureImage(id, 0, format, type, GLsizei(count * sizeof(T)), values.data());
+  throw_on_error();
   return {values.begin(), values.end()};
 }
 
@@ -90,6 +94,7 @@ Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags) : bytes_(std::m
   }
   GLuint id = 0;
   glCreateBuffers(1, &id);
+  count_object();
   handle_ = Handle<delete_buffer>(id);
   std::array<std::byte, 16> padded{};  // what is smaller than the smallest buffer is not read beyond its end
   if (data != nullptr && bytes < padded.size()) {
@@ -107,10 +112,24 @@ void reserve(Buffer& buffer, size_t bytes) {
   if (buffer.id() == 0 || buffer.bytes() < bytes) buffer = Buffer(bytes);
 }
 
-void Buffer::clear() const { glClearNamedBufferData(id(), GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr); }
+// GL orders its own writes after those of shaders only behind this barrier; shaders see them without one.
+void Buffer::clear() const {
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glClearNamedBufferData(id(), GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, nullptr);
+}
+
+void Buffer::fill(GLuint word) const { fill(word, bytes_ / sizeof word, 0); }
+
+void Buffer::fill(GLuint word, size_t count, size_t first) const {
+  assert((first + count) * sizeof word <= bytes_);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  glClearNamedBufferSubData(id(), GL_R32UI, GLintptr(first * sizeof word), GLsizeiptr(count * sizeof word),
+                            GL_RED_INTEGER, GL_UNSIGNED_INT, &word);
+}
 
 void Buffer::upload(const void* data, size_t bytes, size_t offset) const {
   assert(offset + bytes <= bytes_);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   if (bytes > 0) glNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(bytes), data);
 }
 
@@ -118,6 +137,7 @@ void Buffer::download(void* data, size_t bytes, size_t offset) const {
   assert(offset + bytes <= bytes_);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   if (bytes > 0) glGetNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(bytes), data);
+  throw_on_error();
 }
 
 Texture Texture::make_2d(GLenum format, int width, int height, int levels) {
@@ -147,6 +167,7 @@ Texture Texture::make_3d(GLenum format, glm::ivec3 size) {
 Texture::Texture(GLenum target, GLenum format, glm::ivec3 size) : target_(target), format_(format), size_(size) {
   GLuint id = 0;
   glCreateTextures(target, 1, &id);
+  count_object();
   handle_ = Handle<delete_texture>(id);
 }
 
@@ -178,6 +199,7 @@ void Texture::wrap(GLenum s, GLenum t) const {
 void Texture::clear(const float (&rgba)[4]) const {
   const FormatClass kind = format_class(format_);
   assert(kind != FormatClass::depth);
+  glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   if (kind == FormatClass::colour) {
     glClearTexImage(id(), 0, GL_RGBA, GL_FLOAT, rgba);
   } else {
@@ -210,6 +232,7 @@ std::vector<float> Texture::download(int channels) const {
 Framebuffer::Framebuffer(std::span<const Attachment> colors, Attachment depth, glm::ivec2 size) : size_(size) {
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
+  count_object();
   handle_ = Handle<delete_framebuffer>(id);
   const auto attach = [id](GLenum point, const Attachment& a) {
     if (a.layer < 0) {
@@ -236,6 +259,7 @@ Framebuffer Framebuffer::without_attachments(glm::ivec2 size) {
   Framebuffer f;
   GLuint id = 0;
   glCreateFramebuffers(1, &id);
+  count_object();
   f.handle_ = Handle<delete_framebuffer>(id);
   f.size_ = size;
   glNamedFramebufferParameteri(id, GL_FRAMEBUFFER_DEFAULT_WIDTH, size.x);
@@ -249,10 +273,7 @@ void Framebuffer::bind() const {
 }
 
 void draw_fullscreen_triangle() {
-  GLuint id = 0;
-  glCreateVertexArrays(1, &id);
-  const VertexArray empty(id);  // core profile draws only with one bound
-  glBindVertexArray(empty.id());
+  glBindVertexArray(empty_vertex_array());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);
 }

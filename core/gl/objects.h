@@ -1,6 +1,7 @@
 #pragma once
 #include <epoxy/gl.h>
 
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -40,7 +41,12 @@ void delete_buffer(GLuint id);
 void delete_texture(GLuint id);
 void delete_framebuffer(GLuint id);
 void delete_vertex_array(GLuint id);
-void delete_sampler(GLuint id);
+
+/// Buffers, textures, framebuffers, vertex arrays, programs and timer queries made so far, by all contexts: a steady
+/// frame makes none. (Fences, one for each result on its way to the host, do not count.)
+std::uint64_t objects_made();
+/// For what makes GL objects outside this file.
+void count_object(std::uint64_t objects = 1);
 
 /// Immutable buffer storage (direct state access). Size 0 becomes 16 bytes, so that it can always be bound.
 /// @throws Error(over_limit) naming both sizes when `bytes` exceeds GL_MAX_SHADER_STORAGE_BLOCK_SIZE or GL is out of
@@ -58,10 +64,13 @@ class Buffer {
   size_t bytes() const { return bytes_; }
   void bind_storage(GLuint binding) const;
   void bind_uniform(GLuint binding) const;
-  void clear() const;  // to zero bytes
+  // Clears and uploads wait for what shaders have written there before.
+  void clear() const;                                        // to zero bytes
+  void fill(GLuint word) const;                              // all words
+  void fill(GLuint word, size_t count, size_t first) const;  // words
   void upload(const void* data, size_t bytes, size_t offset = 0) const;
-  void download(void* data, size_t bytes,
-                size_t offset = 0) const;  // waits for the GPU: never in the middle of a frame
+  /// Waits for the GPU: never in the middle of a frame. @throws Error(no_device) after an OpenGL error.
+  void download(void* data, size_t bytes, size_t offset = 0) const;
   template <class T>
   std::vector<T> download(size_t count, size_t offset = 0) const {
     std::vector<T> v(count);
@@ -76,6 +85,12 @@ class Buffer {
 
 /// Room for `bytes`: a new buffer where there is none as large. What was in it is lost then.
 void reserve(Buffer& buffer, size_t bytes);
+/// `data` at the beginning of the buffer: a new one only where that does not fit.
+template <class T>
+void put(Buffer& buffer, const std::vector<T>& data) {
+  reserve(buffer, data.size() * sizeof(T));
+  buffer.upload(data.data(), data.size() * sizeof(T));
+}
 
 /// Immutable texture storage, nearest filtering and clamped to the edge until told otherwise.
 /// @throws Error(over_limit) when the GPU's texture limits or memory do not allow the size.
@@ -94,9 +109,9 @@ class Texture {
   void filter(GLenum min_filter, GLenum mag_filter) const;
   void wrap(GLenum mode) const;
   void wrap(GLenum s, GLenum t) const;
-  void clear(const float (&rgba)[4]) const;  // colour formats
+  void clear(const float (&rgba)[4]) const;  // colour formats; waits for what shaders have written there before
   /// Level 0 as floats, `channels` of them a texel (GL_RED, GL_RG, GL_RGB or GL_RGBA by 1..4; integers exact up to
-  /// 2^24). Waits for the GPU.
+  /// 2^24). Waits for the GPU. @throws Error(no_device) after an OpenGL error.
   std::vector<float> download(int channels) const;
 
  private:
@@ -130,7 +145,7 @@ class Framebuffer {
 
 using VertexArray = Handle<delete_vertex_array>;
 
-/// One triangle over the whole viewport from gl_VertexID (shaders/shared/fullscreen.vert.glsl); needs no buffers.
+/// One triangle over the whole viewport from gl_VertexID (shaders/shared/fullscreen.vert.glsl).
 void draw_fullscreen_triangle();
 
 }  // namespace volgi::gl

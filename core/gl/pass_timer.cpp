@@ -10,6 +10,9 @@
 #include <map>
 #include <utility>
 
+#include "core/gl/context.h"
+#include "core/gl/objects.h"
+
 namespace volgi::gl {
 namespace {
 
@@ -63,6 +66,7 @@ struct PassTimer::Data {
     if (free_queries.empty()) {
       free_queries.resize(16);
       glCreateQueries(GL_TIMESTAMP, GLsizei(free_queries.size()), free_queries.data());
+      count_object(free_queries.size());
     }
     const GLuint id = free_queries.back();
     free_queries.pop_back();
@@ -169,6 +173,7 @@ void PassTimer::end_frame() {
   d.in_frame = false;
   ++d.frame;
   d.collect(false);
+  throw_on_error();
 }
 
 std::vector<PassTimer::PassTime> PassTimer::medians() {

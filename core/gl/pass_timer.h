@@ -31,6 +31,7 @@ class PassTimer {
   [[nodiscard]] Scope scope(std::string_view pass_name);
 
   void begin_frame();
+  /// @throws Error(no_device) when OpenGL has reported an error (core/gl/context.h).
   void end_frame();
 
   struct PassTime {

@@ -4,12 +4,14 @@
 #include <array>
 #include <cassert>
 #include <glm/gtc/type_ptr.hpp>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "core/error.h"
-#include "core/gl/objects.h"
+#include "core/gl/limits.h"
 #include "core/gl/shader_source.h"
+#include "shaders/shared/global_index.shared.h"
 
 namespace volgi::gl {
 namespace {
@@ -57,6 +59,7 @@ Shader compile(const Stage& stage, const std::string& defines) {
 GLuint link(std::span<const Stage> stages, const std::vector<std::string>& defines) {
   const std::string define_text = define_lines(defines);
   const GLuint program = glCreateProgram();
+  count_object();
   std::vector<Shader> shaders;
   try {
     for (const Stage& stage : stages) {
@@ -146,7 +149,33 @@ void Program::set(const char* name, const glm::mat4& v) const {
 void dispatch(glm::ivec3 size, glm::ivec3 local) {
   assert(size.x > 0 && size.y > 0 && size.z > 0);
   const glm::uvec3 groups = glm::uvec3((size + local - 1) / local);
+  for (GLuint axis = 0; axis < 3; ++axis) {
+    const GLint64 most = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, axis);
+    if (GLint64(groups[int(axis)]) > most) {
+      throw Error(ExitCode::over_limit, "a pass over " + std::to_string(size.x) + " x " + std::to_string(size.y) +
+                                            " x " + std::to_string(size.z) + " elements has more than this GPU's " +
+                                            std::to_string(most) + " groups; use a smaller grid or picture");
+    }
+  }
   glDispatchCompute(groups.x, groups.y, groups.z);
+}
+
+void dispatch_linear(size_t count, size_t group_size) {
+  const size_t most =
+      std::numeric_limits<GLint>::max() - GROUPS_A_ROW * group_size;  // the last row is dispatched whole
+  if (count > most) {
+    throw Error(ExitCode::over_limit, "a pass over " + std::to_string(count) + " elements exceeds the " +
+                                          std::to_string(most) + " that it can count; use a smaller grid or picture");
+  }
+  const size_t groups = (count + group_size - 1) / group_size;
+  const size_t rows = (groups + GROUPS_A_ROW - 1) / GROUPS_A_ROW;
+  if (rows > 0) glDispatchCompute(GLuint(std::min<size_t>(groups, GROUPS_A_ROW)), GLuint(rows), 1);
+}
+
+void dispatch_indirect(const Buffer& groups) {
+  glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
+  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, groups.id());
+  glDispatchComputeIndirect(0);
 }
 
 std::string shader_source(std::string_view file) { return expand_shader(file); }

@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/gl/objects.h"
+
 namespace volgi::gl {
 
 /// A linked program from files under shaders/ (embedded in the library at build time, so that nothing is looked up at
@@ -47,7 +49,16 @@ class Program {
 };
 
 /// Dispatches enough groups of `local` to cover `size`.
+/// @throws Error(over_limit) when that is more groups along an axis than this GPU takes; GL promises 65535.
 void dispatch(glm::ivec3 size, glm::ivec3 local);
+
+/// Dispatches at least `count` invocations in groups of `group_size`, in further rows where there are more groups than
+/// GL promises along x. Shaders number them by global_index() of shared/global_index.shared.h, never by
+/// gl_GlobalInvocationID.x. @throws Error(over_limit) when an int cannot count them.
+void dispatch_linear(size_t count, size_t group_size);
+
+/// Dispatches as many groups as the three first words of `groups` say, which shaders have written.
+void dispatch_indirect(const Buffer& groups);
 
 /// The text of an embedded shader file, includes expanded (for tests and tools).
 std::string shader_source(std::string_view file);

@@ -3,10 +3,20 @@
 #include <cassert>
 #include <cstring>
 
+#include "core/error.h"
+
 namespace volgi::gl {
 
 namespace {
 constexpr GLbitfield kMap = GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+}
+
+void wait_for(GLsync fence) {
+  constexpr GLuint64 second_ns = 1'000'000'000;
+  GLenum status = GL_TIMEOUT_EXPIRED;
+  while (status == GL_TIMEOUT_EXPIRED) status = glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, second_ns);
+  if (status != GL_WAIT_FAILED) return;
+  throw Error(ExitCode::no_device, "OpenGL failed to wait for a result of the GPU; use --backend cpu");
 }
 
 Readback::Readback(size_t bytes, size_t slots) : buffer_(bytes * slots, nullptr, kMap), bytes_(bytes), slots_(slots) {
@@ -30,9 +40,7 @@ void Readback::pop(void* out) {
   assert(!waiting_.empty());
   Waiting w = waiting_.front();
   waiting_.pop_front();
-  constexpr GLuint64 kSecond = 1'000'000'000;
-  while (glClientWaitSync(w.fence, GL_SYNC_FLUSH_COMMANDS_BIT, kSecond) == GL_TIMEOUT_EXPIRED) {
-  }
+  wait_for(w.fence);
   glDeleteSync(w.fence);
   std::memcpy(out, mapped_ + w.slot * bytes_, bytes_);
 }

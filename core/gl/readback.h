@@ -8,6 +8,9 @@
 
 namespace volgi::gl {
 
+/// Until the GPU has come to `fence`. @throws Error(no_device) when GL says that it cannot wait.
+void wait_for(GLsync fence);
+
 /// Brings small results to the host without draining the GPU: push() queues a copy, pop() waits for the oldest copy
 /// only, by when later work is already queued.
 class Readback {
@@ -20,7 +23,7 @@ class Readback {
 
   void push(const Buffer& from, size_t offset = 0);
   size_t pending() const { return waiting_.size(); }
-  void pop(void* out);
+  void pop(void* out);  // @throws Error(no_device) as wait_for
   void drop_all();
 
  private:

@@ -53,6 +53,7 @@ void append_mesh(const Mesh& mesh, std::vector<Vertex>& vertices) {
 VertexArray make_vertex_array(GLuint buffer) {
   GLuint id = 0;
   glCreateVertexArrays(1, &id);
+  count_object();
   glVertexArrayVertexBuffer(id, 0, buffer, 0, sizeof(Vertex));
   const auto attribute = [id](GLuint index, GLint size, size_t offset) {
     glEnableVertexArrayAttrib(id, index);

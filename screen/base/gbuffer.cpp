@@ -2,16 +2,17 @@
 
 #include <array>
 
+#include "core/gl/limits.h"
 #include "core/gl/raster_state.h"
 #include "shaders/screen/base/gbuffer.shared.h"
 
 namespace volgi::screen {
 
-GBuffer::GBuffer(glm::ivec2 size)
+GBuffer::GBuffer(glm::ivec2 size, GLenum normal_format)
     : size_(size),
       depth_(gl::Texture::make_2d(GL_DEPTH_COMPONENT32F, size.x, size.y)),
       position_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-      normals_(gl::Texture::make_2d(GL_RGBA16_SNORM, size.x, size.y)),
+      normals_(gl::Texture::make_2d(gl::renderable_format(normal_format, GL_RGBA32F), size.x, size.y)),
       albedo_(gl::Texture::make_2d(GL_RGBA16, size.x, size.y)),
       emission_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
       object_id_(gl::Texture::make_2d(GL_R32UI, size.x, size.y)),

@@ -14,7 +14,9 @@ namespace volgi::screen {
 class GBuffer {
  public:
   static constexpr const char* name = "screen/base/gbuffer";
-  explicit GBuffer(glm::ivec2 size);
+  /// @param normal_format  of normals(); RGBA32F, twice as large, where this GPU cannot render to it: GL does not
+  /// require that of signed normalised formats.
+  explicit GBuffer(glm::ivec2 size, GLenum normal_format = GL_RGBA16_SNORM);
   void run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassTimer& timer);
 
   glm::ivec2 size() const { return size_; }
@@ -25,7 +27,7 @@ class GBuffer {
   const gl::Texture& position() const { return position_; }  // RGBA32F, centred frame; w = 1, or 0 in the background
   const gl::Texture& normals() const {
     return normals_;
-  }                                                            // RGBA16_SNORM: octahedral shading (xy), geometric (zw)
+  }                                                            // normal_format: octahedral shading (xy), geometric (zw)
                                                                // normal, both on the viewer's side of the triangle
   const gl::Texture& albedo() const { return albedo_; }        // RGBA16, linear
   const gl::Texture& emission() const { return emission_; }    // RGBA32F, radiance towards the viewer

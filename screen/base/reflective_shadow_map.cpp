@@ -2,18 +2,21 @@
 
 #include <cassert>
 
+#include "core/gl/limits.h"
 #include "core/gl/raster_state.h"
 #include "core/light.h"
 
 namespace volgi::screen {
 
-ReflectiveShadowMap::ReflectiveShadowMap(Resolution resolution)
-    : resolution_(resolution), program_(gl::Program::raster(name)) {}
+ReflectiveShadowMap::ReflectiveShadowMap(Resolution resolution, GLenum normal_format)
+    : resolution_(resolution),
+      normal_format_(gl::renderable_format(normal_format, GL_RG32F)),
+      program_(gl::Program::raster(name)) {}
 
-ReflectiveShadowMap::Map ReflectiveShadowMap::make_map(int resolution, int layer_count) {
+ReflectiveShadowMap::Map ReflectiveShadowMap::make_map(int resolution, int layer_count) const {
   Map map;
   map.depth = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution, resolution, layer_count);
-  map.normal = gl::Texture::make_2d_array(GL_RG16_SNORM, resolution, resolution, layer_count);
+  map.normal = gl::Texture::make_2d_array(normal_format_, resolution, resolution, layer_count);
   map.albedo = gl::Texture::make_2d_array(GL_RGBA16, resolution, resolution, layer_count);
   for (int layer = 0; layer < layer_count; ++layer) {
     using Attachment = gl::Framebuffer::Attachment;
@@ -41,8 +44,8 @@ void ReflectiveShadowMap::run(const gl::SceneBuffers& buffers, const Scene& scen
     const glm::ivec3 size(resolution, resolution, int(layers.size()));
     if (maps_[i].framebuffers.empty() || maps_[i].depth.size() != size) maps_[i] = make_map(size.x, size.z);
   }
-  light_buffer_ = gl::Buffer(lights_);
-  layer_buffer_ = gl::Buffer(layers_);
+  gl::put(light_buffer_, lights_);
+  gl::put(layer_buffer_, layers_);
 
   gl::begin_geometry_pass();
   for (int light = 0; light < light_count(); ++light) {
@@ -74,8 +77,9 @@ void ReflectiveShadowMap::bind(int light) const {
 
 size_t ReflectiveShadowMap::bytes() const {
   size_t sum = light_buffer_.bytes() + layer_buffer_.bytes();
+  const size_t texel_bytes = normal_format_ == GL_RG16_SNORM ? 16 : 20;
   for (const shared::ReflectiveShadowLight& l : lights_) {
-    sum += size_t(l.layer_count) * size_t(l.resolution) * size_t(l.resolution) * 16;
+    sum += size_t(l.layer_count) * size_t(l.resolution) * size_t(l.resolution) * texel_bytes;
   }
   return sum;
 }

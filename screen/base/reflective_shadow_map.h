@@ -26,7 +26,8 @@ class ReflectiveShadowMap {
     int cube_face = 512;
     int sun = 2048;
   };
-  explicit ReflectiveShadowMap(Resolution resolution);
+  /// @param normal_format  RG32F, which is 4 bytes a texel more, where this GPU cannot render to it.
+  explicit ReflectiveShadowMap(Resolution resolution, GLenum normal_format = GL_RG16_SNORM);
   ReflectiveShadowMap() : ReflectiveShadowMap(Resolution()) {}
 
   /// Draws the maps of all of `scene.lights` (`buffers` must hold the triangles of `scene`). Textures are kept between
@@ -41,7 +42,7 @@ class ReflectiveShadowMap {
   size_t bytes() const;  // GPU memory
 
   const gl::Texture& depth(int light) const { return maps_[size_t(light)].depth; }    // D32F, 0 in the background
-  const gl::Texture& normal(int light) const { return maps_[size_t(light)].normal; }  // RG16_SNORM, octahedral
+  const gl::Texture& normal(int light) const { return maps_[size_t(light)].normal; }  // normal_format, octahedral
   const gl::Texture& albedo(int light) const { return maps_[size_t(light)].albedo; }  // RGBA16
   const std::vector<shared::ReflectiveShadowLight>& lights() const { return lights_; }
   const std::vector<shared::ReflectiveShadowLayer>& layers() const { return layers_; }
@@ -51,10 +52,11 @@ class ReflectiveShadowMap {
     gl::Texture depth, normal, albedo;
     std::vector<gl::Framebuffer> framebuffers;  // one per layer
   };
-  static Map make_map(int resolution, int layer_count);
+  Map make_map(int resolution, int layer_count) const;
   void draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer);
 
   Resolution resolution_;
+  GLenum normal_format_;
   std::vector<shared::ReflectiveShadowLight> lights_;
   std::vector<shared::ReflectiveShadowLayer> layers_;
   std::vector<Map> maps_;

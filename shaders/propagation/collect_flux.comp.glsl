@@ -1,5 +1,7 @@
 #version 450 core
 // Adds one source's fixed-point deposits to the flux per side and clears them for the next source.
+#include "shared/global_index.shared.h"
+
 layout(local_size_x = 64) in;
 layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 9) buffer Source { vec4 source_flux[]; };
@@ -9,7 +11,7 @@ layout(std430, binding = 11) buffer Lost { vec4 lost_flux; };
 uniform float flux_unit;
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = global_index();
   if (i == 0u) {
     lost_flux.rgb += flux_unit * vec3(flux_lost[0], flux_lost[1], flux_lost[2]);
     for (int band = 0; band < 3; ++band) flux_lost[band] = 0u;

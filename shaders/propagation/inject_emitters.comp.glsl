@@ -1,5 +1,6 @@
 #version 450 core
 // Deposits the light that pieces of emissive surfaces send (voxel/emitter_pieces.h).
+#include "shared/global_index.shared.h"
 #include "propagation/deposit.glsl"
 
 struct Piece {
@@ -13,7 +14,7 @@ layout(std430, binding = 14) readonly buffer Pieces { Piece pieces[]; };
 uniform int piece_count;
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= piece_count) return;
   deposit(pieces[i].position.xyz, pieces[i].normal.xyz, pieces[i].flux.rgb);
 }

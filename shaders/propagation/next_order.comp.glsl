@@ -1,6 +1,7 @@
 #version 450 core
 // Between two orders: what sides have received is added to the total, and what they return (plus the sources that start
 // with this order) becomes what they send. docs/conventions.md#volume-quantities.
+#include "shared/global_index.shared.h"
 #include "shared/side.shared.h"
 
 layout(local_size_x = 64) in;
@@ -14,7 +15,7 @@ uniform bool add_source;
 uniform bool already_reflected;  // hits went on at once (propagate, reflect_hits)
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = global_index();
   if (i >= side_count) return;
   Side side = sides[i];
   vec3 hit = received[i].rgb;

@@ -1,6 +1,7 @@
 #version 450 core
 // Sides as the sweep reads them (sweep.comp.glsl), through textures and in one read each: for every cell its first side
 // and which faces have one, for every side what it sends and the share of light that its face lets through.
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "propagation/side_texel.glsl"
@@ -15,7 +16,7 @@ layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 7) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i < grid.cells.x * grid.cells.y * grid.cells.z) {
     uvec2 own_sides = cell_sides[i];
     imageStore(cell_word, cell_coord(grid, i), uvec4((own_sides.x << 6) | (own_sides.y & 63u), 0u, 0u, 0u));

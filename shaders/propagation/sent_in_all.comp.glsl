@@ -1,5 +1,6 @@
 #version 450 core
 // Power per side sent in all orders: what the radiance in free space follows from.
+#include "shared/global_index.shared.h"
 #include "shared/side.shared.h"
 
 layout(local_size_x = 64) in;
@@ -12,7 +13,7 @@ layout(std430, binding = 9) readonly buffer PunctualFlux { vec4 punctual_flux[];
 layout(std430, binding = 10) writeonly buffer Sent { vec4 sent[]; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = global_index();
   if (i >= side_count) return;
   Side side = sides[i];
   vec3 flux = emitted_flux[i].rgb + punctual_flux[i].rgb;

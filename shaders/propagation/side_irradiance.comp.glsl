@@ -1,5 +1,6 @@
 #version 450 core
 // Irradiance per side from what it has received, before smoothing: times its weight in means.
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 
@@ -14,7 +15,7 @@ layout(std430, binding = 10) writeonly buffer Direct { vec4 direct[]; };      //
 layout(std430, binding = 11) writeonly buffer Indirect { vec4 indirect[]; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = global_index();
   if (i >= side_count) return;
   Side side = sides[i];
   int axis = face_axis(side.face);

@@ -2,6 +2,7 @@
 // Single sides of tilted surfaces carry staircase noise of tens of percent: the irradiance that pixels see is the
 // mean by side_weight() over the sides with like normals in the 3^3 cells around, clamped at zero afterwards
 // (docs/conventions.md#volume-quantities).
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 
@@ -20,7 +21,7 @@ layout(std430, binding = 7) writeonly buffer IndirectIrradiance { vec4 indirect_
 const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  uint i = global_index();
   if (i >= side_count) return;
   ivec3 centre = cell_coord(grid, sides[i].cell);
   vec3 normal = sides[i].normal;

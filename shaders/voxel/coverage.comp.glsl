@@ -2,11 +2,11 @@
 // Coverage of every face of one axis, from the fine lattice (docs/theory.md#voxelization): of the paths from the centre of
 // the lower cell to that of the upper one that go in the mid-plane of the lower cell to one of nine nodes, straight across
 // and back in the mid-plane of the upper cell, the share that is blocked on the way across.
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "voxel/families.glsl"
 
 layout(local_size_x = 32) in;
-#include "voxel/linear_id.glsl"
 layout(std430, binding = 0) readonly buffer Blocked { uint at[]; } blocked[3];
 layout(std430, binding = 3) readonly buffer Haze { uint haze[]; };  // of this axis; empty without glass
 layout(std430, binding = 4) readonly buffer KeyLow { uint key_low[]; };  // of this axis
@@ -69,10 +69,10 @@ void cover(uint face, bool opaque, float share) {
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
-  uint end = min((linear_group() + 1u) * FACES, uint(face_count(grid, axis)));
+  uint end = min((group_index() + 1u) * FACES, uint(face_count(grid, axis)));
   if (lane == 0u) partly_count = 0u;
   barrier();
-  for (uint face = linear_group() * FACES + lane; face < end; face += gl_WorkGroupSize.x) {
+  for (uint face = group_index() * FACES + lane; face < end; face += gl_WorkGroupSize.x) {
     if (key_low[face] == 0xffffffffu) {
       coverage[face] = 0.0;
       continue;

@@ -1,23 +1,22 @@
 #version 450 core
 // For every cell: which faces have sides, and the number of sides of the cells before it in its group (a scan).
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
+#define SCAN_GROUP 256u
+#include "shared/scan.glsl"
 
 layout(local_size_x = 256) in;
-#include "voxel/linear_id.glsl"
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 layout(std430, binding = 0) readonly buffer Coverage { float at[]; } coverage[3];
 layout(std430, binding = 3) writeonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) buffer GroupTotals { uint group_totals[]; };
-
-shared uint running[256];
 
 float face_coverage(int axis, int face) {
   return axis == 0 ? coverage[0].at[face] : axis == 1 ? coverage[1].at[face] : coverage[2].at[face];
 }
 
 void main() {
-  int cell = int(linear_id());
-  uint lane = gl_LocalInvocationID.x;
+  int cell = int(global_index());
   bool inside = cell < grid.cells.x * grid.cells.y * grid.cells.z;
   uint bits = 0u;
   if (inside) {
@@ -31,14 +30,8 @@ void main() {
     }
   }
   uint count = bitCount(bits & 63u);
-  running[lane] = count;
-  barrier();
-  for (uint step = 1u; step < 256u; step <<= 1) {
-    uint before = lane >= step ? running[lane - step] : 0u;
-    barrier();
-    running[lane] += before;
-    barrier();
-  }
-  if (inside) cell_sides[cell] = uvec2(running[lane] - count, bits);
-  if (lane == 255u && linear_group() < uint(group_totals.length())) group_totals[linear_group()] = running[lane];
+  uint before = sum_before(count);
+  if (inside) cell_sides[cell] = uvec2(before, bits);
+  if (gl_LocalInvocationIndex == SCAN_GROUP - 1u && group_index() < uint(group_totals.length()))
+    group_totals[group_index()] = before + count;
 }

@@ -1,12 +1,12 @@
 #version 450 core
 // The two sides of every covered face of one axis, from the surfaces that its cells see; black ones where the list of
 // surfaces had no room in this frame. Areas follow (collect_area).
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "voxel/surfaces.glsl"
 
 layout(local_size_x = 32) in;
-#include "voxel/linear_id.glsl"
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 layout(std430, binding = 0) readonly buffer Entries { uint entries[]; };
 layout(std430, binding = 1) readonly buffer Surfaces { Surface surfaces[]; };
@@ -60,10 +60,10 @@ shared uint covered_count;
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
-  uint end = min((linear_group() + 1u) * FACES, uint(face_count(grid, axis)));
+  uint end = min((group_index() + 1u) * FACES, uint(face_count(grid, axis)));
   if (lane == 0u) covered_count = 0u;
   barrier();
-  for (uint face = linear_group() * FACES + lane; face < end; face += gl_WorkGroupSize.x) {
+  for (uint face = group_index() * FACES + lane; face < end; face += gl_WorkGroupSize.x) {
     if (coverage[face] > 0.0) covered_faces[atomicAdd(covered_count, 1u)] = face;
   }
   barrier();

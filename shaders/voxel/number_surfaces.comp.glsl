@@ -1,10 +1,10 @@
 #version 450 core
 // Gives each face of one axis that some surface crosses a place in the list of surfaces. Places come in any order: what is
 // seen of them does not depend on it.
+#include "shared/global_index.shared.h"
 #include "voxel/surfaces.glsl"
 
 layout(local_size_x = 256) in;
-#include "voxel/linear_id.glsl"
 layout(std430, binding = 0) readonly buffer KeyLow { uint key_low[]; };
 layout(std430, binding = 1) writeonly buffer Entries { uint entries[]; };
 layout(std430, binding = 2) buffer Wanted { uint wanted[4]; };  // entries of each axis, sides
@@ -15,7 +15,7 @@ shared uint group_count;
 shared uint group_first;
 
 void main() {
-  uint face = linear_id();
+  uint face = global_index();
   bool crossed = face < uint(key_low.length()) && key_low[face] != 0xffffffffu;
   if (gl_LocalInvocationID.x == 0u) group_count = 0u;
   barrier();

@@ -97,7 +97,7 @@ TEST_P(ShiftedGrid, ShowsAsMuchLight) {
   const double still = mean_light(picture(scene_, options_));
   for (int k = 0; k < 2; ++k) {
     const float shift = k == 0 ? 0.25f : 0.5f;
-    options_.volume.grid_shift_cells = {shift, -shift, 0.5f * shift};
+    options_.of<VolumeOptions>().grid_shift_cells = {shift, -shift, 0.5f * shift};
     const double percent = 100.0 * mean_light(picture(scene_, options_)) / still;
     EXPECT_NEAR(percent, 100.0, GetParam().limits_percent[size_t(k)]) << "shifted by " << shift;
     RecordProperty("shift_" + std::to_string(int(100.0f * shift)), std::to_string(percent - 100.0));

@@ -39,7 +39,7 @@ class GlTest : public ::testing::Test {
     static Shared* const instance = [] {  // never destroyed: GL objects in static storage may outlive it
       auto* made = new Shared;
       try {
-        made->context = std::make_unique<gl::Context>();
+        made->context = std::make_unique<gl::Context>(gl::ContextOptions{.debug = true});
       } catch (const Error& error) {
         made->reason = error.what();
       }

@@ -21,7 +21,7 @@ void SideGatherGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounc
   first_bounce.clusters.shadow.bind(first_bounce.clusters.maps, program_);
   program_.set("light_count", lights.count());
   program_.use();
-  gl::dispatch({int(std::max(voxels.side_capacity, 1u)), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(voxels.side_capacity, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

@@ -108,7 +108,7 @@ void AreaLightGather::arrange(const VirtualLightListGl& lights, const VirtualAre
   arranged_.bind_storage(3);
   arrange_.set("light_count", light_count_);
   arrange_.use();
-  gl::dispatch({std::max(light_count_, 1), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(light_count_), 64);
   glMemoryBarrier(GL_UNIFORM_BARRIER_BIT);
 }
 
@@ -152,10 +152,9 @@ void AreaLightGather::gather_listed() {
   indirect_.bind_image(0, GL_READ_WRITE);
   direct_.bind_image(1, GL_READ_WRITE);
   list_.bind_storage(0);
-  glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list_.id());
   gather_listed_.set("interleave", 1);
   gather_listed_.use();
-  gather(gather_listed_, {0, light_count_}, [] { glDispatchComputeIndirect(0); });
+  gather(gather_listed_, {0, light_count_}, [this] { gl::dispatch_indirect(list_); });
   wait_for_pictures();
 }
 
@@ -195,7 +194,7 @@ void AreaLightGather::list_doubtful() {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   list_program_.use();
   gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 size_t AreaLightGather::bytes() const {

@@ -36,8 +36,8 @@ class NearLights {
   glm::ivec2 size_;
   float zone_;
   gl::Texture direct_, indirect_;
-  gl::Buffer list_, masks_, large_masks_;  // of tiles: shaders/screen/gather/interleaved/near_lights.glsl
-  gl::Program tiles_, gather_;
+  gl::Buffer list_, boxes_, masks_, large_masks_;  // of tiles: shaders/screen/gather/interleaved/near_lights.glsl
+  gl::Program boxes_program_, large_program_, tiles_program_, gather_;
 };
 
 }  // namespace volgi::screen

@@ -14,13 +14,6 @@ gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, s
 
 glm::ivec2 coarse_size(glm::ivec2 size, int stride) { return (size - 1 + stride - 1) / stride + 1; }
 
-/// One-dimensional, beyond the 65535 groups of 64 threads that GL promises: thread_index() of coarse_pixels.glsl.
-void dispatch_threads(size_t count) {
-  constexpr size_t kGroupsARow = 32768;
-  const size_t groups = (count + 63) / 64;
-  glDispatchCompute(GLuint(std::min(groups, kGroupsARow)), GLuint((groups + kGroupsARow - 1) / kGroupsARow), 1);
-}
-
 void bind_pixels(const GBuffer& gbuffer) {
   gbuffer.bind();
 }
@@ -28,17 +21,12 @@ void bind_pixels(const GBuffer& gbuffer) {
 }  // namespace
 
 VirtualLightGather::VirtualLightGather(glm::ivec2 size, const GatherOptions& options)
-    : options_(options),
-      size_(size),
-      direct_(picture(size)),
-      indirect_(picture(size)),
-      gather_grid_(gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl")) {
+    : options_(options), size_(size), direct_(picture(size)), indirect_(picture(size)) {
   direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
   if (options_.stride == 1) return;
   coarse_direct_ = picture(coarse_size(size, options_.stride));
   coarse_indirect_ = picture(coarse_size(size, options_.stride));
   list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
-  gather_list_ = gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl", {"LISTED"});
   discontinuity_ = gl::Program::compute("screen/gather/strided/discontinuity.comp.glsl");
 }
 
@@ -65,10 +53,20 @@ void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& l
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
+/// Without negative lights, a program that does not declare their block, as none is bound.
+const gl::Program& VirtualLightGather::gather_program(Points points, bool negative) {
+  auto& program = gather_[points == Points::list][negative];
+  if (program) return *program;
+  std::vector<std::string> defines;
+  if (points == Points::list) defines.emplace_back("LISTED");
+  if (negative) defines.emplace_back("NEGATIVE");
+  return program.emplace(gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl", defines));
+}
+
 void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights, int first, int end,
                                 const NegativeLights* negative, const gl::Texture& target) {
   const bool listed = points == Points::list;
-  const gl::Program& program = listed ? gather_list_ : gather_grid_;
+  const gl::Program& program = gather_program(points, negative != nullptr);
   program.use();
   program.set("stride", listed ? 1 : options_.stride);
   target.bind_image(0, GL_READ_WRITE);
@@ -84,12 +82,11 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
     program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_A_BLOCK));
     program.set("begins", block == first_block ? 1 : 0);
     program.set("ends", block == last_block ? 1 : 0);
-    program.set("negative_count", negative != nullptr ? negative->count() : 0);
+    if (negative != nullptr) program.set("negative_count", negative->count());
     if (listed) {
-      glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, list_.id());
-      glDispatchComputeIndirect(0);
+      gl::dispatch_indirect(list_);
     } else {
-      dispatch_threads(size_t(target.size().x) * size_t(target.size().y));
+      gl::dispatch_linear(size_t(target.size().x) * size_t(target.size().y), 64);
     }
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
@@ -111,7 +108,7 @@ void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_
   direct_.bind_image(1, GL_WRITE_ONLY);
   list_.bind_storage(0);
   gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {8, 8, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 float VirtualLightGather::coarse_share() const {

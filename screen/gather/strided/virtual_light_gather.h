@@ -1,4 +1,7 @@
 #pragma once
+#include <array>
+#include <optional>
+
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
@@ -41,6 +44,7 @@ class VirtualLightGather {
 
  private:
   enum class Points { grid, list };
+  const gl::Program& gather_program(Points points, bool negative);
   void gather(Points points, const VirtualLightListGl& lights, int first, int end, const NegativeLights* negative,
               const gl::Texture& target);
   void find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m);
@@ -49,7 +53,8 @@ class VirtualLightGather {
   glm::ivec2 size_;
   gl::Texture direct_, indirect_, coarse_direct_, coarse_indirect_;
   gl::Buffer list_;  // WorkListHead of shaders/screen/base/work_list.glsl, then pixels
-  gl::Program gather_grid_, gather_list_, discontinuity_;
+  std::array<std::array<std::optional<gl::Program>, 2>, 2> gather_;  // [listed][negative], made when first wanted
+  gl::Program discontinuity_;
 };
 
 }  // namespace volgi::screen

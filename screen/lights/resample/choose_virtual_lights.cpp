@@ -18,8 +18,8 @@ ChooseVirtualLights::ChooseVirtualLights(int one_of)
       receivers_(size_t(kReceivers) * 8 * sizeof(float)),
       receivers_program_(gl::Program::compute("screen/lights/resample/choose_receivers.comp.glsl")),
       weigh_(gl::Program::compute("screen/lights/resample/choose_weigh.comp.glsl")),
-      sum_(gl::Program::compute("screen/lights/resample/choose_sum.comp.glsl")),
-      choose_(gl::Program::compute("screen/lights/resample/choose_virtual_lights.comp.glsl")) {}
+      choose_(gl::Program::compute("screen/lights/resample/choose_virtual_lights.comp.glsl")),
+      sum_("screen/lights/resample/choose_sum.comp.glsl", {}) {}
 
 void ChooseVirtualLights::make_room(const VirtualLightListGl& candidates) {
   lights_.of_light.clear();
@@ -43,7 +43,7 @@ void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffe
   ranges_.bind_storage(4);
   gbuffer.bind();
   receivers_program_.use();
-  gl::dispatch({kReceivers, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(kReceivers, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   int first = 0;
   for (const int count : lights_.of_light) {
@@ -56,21 +56,21 @@ void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffe
 
 void ChooseVirtualLights::choose(int first_candidate, int candidates, int first, int count) {
   if (count == 0) return;
-  for (const gl::Program* program : {&weigh_, &sum_, &choose_}) {
+  for (const gl::Program* program : {&weigh_, &choose_}) {
     program->set("first_candidate", first_candidate);
     program->set("candidate_count", candidates);
     program->set("flux_share", kFluxShare);
   }
+  sum_.set("first_candidate", first_candidate);
+  sum_.set("candidate_count", candidates);
   weigh_.use();
-  gl::dispatch({candidates, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(candidates), 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  sum_.use();
-  gl::dispatch({1, 1, 1}, {1, 1, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_.run();
   choose_.set("first", first);
   choose_.set("count", count);
   choose_.use();
-  gl::dispatch({count, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(count), 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

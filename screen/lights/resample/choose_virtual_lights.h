@@ -3,6 +3,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/sum_in_order.h"
 #include "screen/base/virtual_light_list_gl.h"
 
 namespace volgi::screen {
@@ -39,7 +40,8 @@ class ChooseVirtualLights {
   int one_of_;
   VirtualLightListGl lights_;
   gl::Buffer receivers_, weights_, ranges_;
-  gl::Program receivers_program_, weigh_, sum_, choose_;
+  gl::Program receivers_program_, weigh_, choose_;
+  SumInOrder sum_;
 };
 
 }  // namespace volgi::screen

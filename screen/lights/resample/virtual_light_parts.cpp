@@ -44,7 +44,7 @@ void VirtualLightParts::run_source(int light, int first, int count, bool along_c
   program_.set("along_curve", along_curve ? 1 : 0);
   program_.set("measure", float(measure));
   program_.use();
-  gl::dispatch({count, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(count), 64);
 }
 
 }  // namespace volgi::screen

@@ -162,7 +162,7 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
     }
     list_.buffer.bind_storage(kLightsBinding);
     lights_program_.use();
-    gl::dispatch({count, 1, 1}, {64, 1, 1});
+    gl::dispatch_linear(size_t(count), 64);
     first += count;
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -190,6 +190,7 @@ void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {
   size_t values = 0;
   for (const int size : sizes) values += size_t(layers) * size_t(size) * size_t(size);
   if (pyramid_.bytes() < values * sizeof(float)) pyramid_ = gl::Buffer(values * sizeof(float));
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the light before may still be read from the pyramid
   pyramid_.bind_storage(kPyramidBinding);
   texels_program_.set("light", light);
   texels_program_.use();

@@ -84,7 +84,7 @@ void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_dia
     }
     assign_.use();
     assign_.set("iteration", iteration);
-    gl::dispatch({count, 1, 1}, {kListStep, 1, 1});
+    gl::dispatch_linear(size_t(count), kListStep);
     wait_for_writes();
   }
   list_.use();

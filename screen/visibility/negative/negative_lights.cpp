@@ -36,12 +36,12 @@ NegativeLights::NegativeLights(const NegativeLightOptions& options)
   place_ = gl::Program::compute("screen/visibility/negative/negative_lights.comp.glsl", defines);
   if (options_.method == Method::cochran2007) return;
   weigh_ = gl::Program::compute("screen/visibility/negative/negative_weights.comp.glsl", defines);
-  sum_ = gl::Program::compute("screen/visibility/negative/negative_sum.comp.glsl", defines);
+  sum_ = std::make_unique<SumInOrder>("screen/visibility/negative/negative_sum.comp.glsl", defines);
   if (options_.method != Method::sides) return;
   seed_ = gl::Program::compute("screen/visibility/negative/open_cells_seed.comp.glsl");
   spread_ = gl::Program::compute("screen/visibility/negative/open_cells_spread.comp.glsl");
   count_ = gl::Program::compute("screen/visibility/negative/sides_by_block_count.comp.glsl");
-  scan_ = gl::Program::compute("screen/visibility/negative/sides_by_block_scan.comp.glsl");
+  scan_ = std::make_unique<gl::Scan>();
   list_ = gl::Program::compute("screen/visibility/negative/sides_by_block_list.comp.glsl");
 }
 
@@ -50,13 +50,13 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
   assert((options_.method == Method::sides) == (voxels != nullptr));
   const auto scope = timer.scope(name);
   gbuffer.bind();
-  lights.buffer.bind_storage(0);
-  lights_.bind_storage(1);
   if (voxels != nullptr) {
     voxels->bind();
     order_sides(*voxels);
-    find_open_cells(*voxels, lights.reflected);
   }
+  lights.buffer.bind_storage(0);
+  lights_.bind_storage(1);
+  if (voxels != nullptr) find_open_cells(*voxels, lights.reflected);
   for (const gl::Program* program : {&weigh_, &place_}) {
     if (program->id() == 0) continue;
     program->set("light_count", lights.reflected);
@@ -72,19 +72,19 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
 void NegativeLights::order_sides(const VoxelGridGl& voxels) {
   constexpr int kBlockEdge = 8;  // of shaders/screen/visibility/negative/sides_by_block.glsl
   const glm::ivec3 edge = (voxels.grid.cells + kBlockEdge - 1) / kBlockEdge;
-  const int blocks = edge.x * edge.y * edge.z;
+  const size_t blocks = size_t(edge.x) * size_t(edge.y) * size_t(edge.z);
   gl::reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
-  gl::reserve(block_starts_, size_t(blocks) * sizeof(GLuint));
-  sides_by_block_.bind_storage(7);
-  block_starts_.bind_storage(2);
-  const auto run = [](const gl::Program& program, int threads) {
+  gl::reserve(block_starts_, blocks * sizeof(GLuint));
+  const auto run = [&](const gl::Program& program) {
+    sides_by_block_.bind_storage(7);
+    block_starts_.bind_storage(2);
     program.use();
-    gl::dispatch({threads, 1, 1}, {64, 1, 1});
+    gl::dispatch_linear(blocks, 1);  // a group to each
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   };
-  run(count_, blocks);
-  run(scan_, 1);
-  run(list_, blocks);
+  run(count_);
+  scan_->run(block_starts_, blocks);
+  run(list_);
 }
 
 void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count) {
@@ -94,14 +94,14 @@ void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count)
   open_cells_.bind_storage(6);
   seed_.use();
   seed_.set("light_count", light_count);
-  gl::dispatch({light_count, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(light_count), 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   spread_.use();
   for (int round = 0; round < kSpreadRounds; ++round) {
     for (int axis = 0; axis < 3; ++axis) {
       const glm::ivec3 cells = voxels.grid.cells;
       spread_.set("axis", axis);
-      gl::dispatch({cells.x * cells.y * cells.z / cells[axis], 1, 1}, {64, 1, 1});
+      gl::dispatch_linear(cell_count(voxels.grid) / size_t(cells[axis]), 64);
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
   }
@@ -112,11 +112,9 @@ void NegativeLights::choose(const VoxelGridGl* voxels) {
   gl::reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
   weights_.bind_storage(2);
   weigh_.use();
-  gl::dispatch({int(candidates), 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(candidates, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  sum_.use();
-  gl::dispatch({1, 1, 1}, {1, 1, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  sum_->run();
 }
 
 std::vector<shared::NegativeLight> NegativeLights::download() const {

@@ -1,11 +1,14 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "core/gl/scan.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/sum_in_order.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "shaders/screen/visibility/negative/negative_light.shared.h"
 #include "voxel/voxel_grid_gl.h"
@@ -41,7 +44,8 @@ class NegativeLights {
   /// Waits for the GPU; after a frame, not in one.
   std::vector<shared::NegativeLight> download() const;
   size_t bytes() const {
-    return lights_.bytes() + weights_.bytes() + open_cells_.bytes() + sides_by_block_.bytes() + block_starts_.bytes();
+    return lights_.bytes() + weights_.bytes() + open_cells_.bytes() + sides_by_block_.bytes() + block_starts_.bytes() +
+           (scan_ ? scan_->bytes() : 0);
   }
 
  private:
@@ -53,7 +57,9 @@ class NegativeLights {
   gl::Buffer lights_;
   gl::Buffer weights_;  // of candidates (shaders/screen/visibility/negative/negative_candidates.glsl)
   gl::Buffer open_cells_, sides_by_block_, block_starts_;  // of Method::sides
-  gl::Program place_, weigh_, sum_, seed_, spread_, count_, scan_, list_;
+  gl::Program place_, weigh_, seed_, spread_, count_, list_;
+  std::unique_ptr<SumInOrder> sum_;  // none of Method::cochran2007
+  std::unique_ptr<gl::Scan> scan_;   // of Method::sides
 };
 
 }  // namespace volgi::screen

@@ -6,8 +6,6 @@ uniform int stride;  // between coarse pixels; 1: every pixel
 
 #include "screen/base/work_list.glsl"
 
-uint thread_index() { return group_index() * 64u + gl_LocalInvocationIndex; }
-
 // Coarse texels lie on every stride-th pixel, and on the last row and column, so that all pixels lie between some.
 ivec2 pixel_of_coarse(ivec2 coarse, ivec2 size) { return min(coarse * stride, size - 1); }
 

@@ -1,13 +1,12 @@
-// core/gl: the embedded shaders, objects, pass times; and the composition.
+// core/gl: the embedded shaders, objects, pass times.
 #include <array>
 #include <chrono>
 #include <limits>
 #include <thread>
 
-#include "core/gl/program.h"
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
 #include "core/gl/shader_source.h"
-#include "screen/base/compose.h"
-#include "tests/screen/screen_scene.h"
 #include "tests/support/gl_test.h"
 
 namespace volgi::test {
@@ -42,7 +41,7 @@ using Gl = GlTest;
 
 TEST_F(Gl, DeviceThatDoesNotExist) {
   try {
-    const gl::Context other(1000);
+    const gl::Context other({.device = 1000});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::usage);
@@ -129,29 +128,6 @@ TEST_F(Gl, TimerQueriesAreReadBack) {
   EXPECT_GE(passes[0].gpu_ms, 0.0);
   EXPECT_LT(passes[0].gpu_ms, 1000.0);
   EXPECT_EQ(timer.kind(), gl::PassTimer::Kind::gpu);
-}
-
-TEST_F(Gl, CompositionAddsWhatIsAskedFor) {
-  constexpr glm::ivec2 size(16);
-  const Scene scene = stage();
-  gl::PassTimer timer(context().software(), false);
-  const gl::SceneBuffers buffers(scene);
-  screen::GBuffer gbuffer(size);
-  gbuffer.run(buffers, stage_camera(scene), timer);
-  std::array<gl::Texture, 3> layers;
-  for (size_t i = 0; i < 3; ++i) {
-    layers[i] = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
-    layers[i].clear({float(1 << i), 0.0f, 0.0f, 1.0f});
-  }
-  screen::Compose compose(size);
-  const auto sum = [&](screen::LightPart part) {
-    compose.run(gbuffer, {{&layers[0], &layers[1]}, {&layers[2]}}, part, timer);
-    return screen::image_from_texture(compose.radiance());
-  };
-  EXPECT_EQ(sum(screen::LightPart::direct).at(8, 12).r, 3.0f);
-  EXPECT_EQ(sum(screen::LightPart::indirect).at(8, 12).r, 4.0f);
-  EXPECT_EQ(sum(screen::LightPart::full).at(8, 12).r, 7.0f);
-  EXPECT_EQ(sum(screen::LightPart::full).at(0, 0), glm::vec3(0.0f));  // background
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // What every side reflects of the virtual lights: A rho E [W]. Lights come in the order of their area lights, so that
 // each one's shadow is looked up once.
 #include "shared/disk_to_point.glsl"
+#include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
@@ -21,7 +22,7 @@ layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
 
 void main() {
-  uint s = gl_GlobalInvocationID.x;
+  uint s = global_index();
   if (s >= side_count || s >= uint(sides.length())) return;
   Side side = sides[s];
   vec3 at = vec3(cell_coord(grid, side.cell)) + 0.5;

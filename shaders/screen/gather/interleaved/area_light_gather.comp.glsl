@@ -70,7 +70,7 @@ Irradiance sum_of_clusters(vec3 x, vec3 normal, vec3 geometric) {
 
 void main() {
 #ifdef LISTED
-  int index = int(thread_index());
+  int index = int(global_index());
   if (index >= int(head.count)) return;
   ivec2 pixel = unpack_pixel(listed[index]);
 #else

@@ -1,6 +1,7 @@
 #version 450 core
 // Lights in the order of their clusters; `source` becomes the area light. Behind them those without one: their source
 // is behind every area light.
+#include "shared/global_index.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
 #include "shared/virtual_light.shared.h"
 
@@ -12,7 +13,7 @@ layout(std430, binding = 3) writeonly buffer Arranged { VirtualLight arranged[];
 uniform int light_count;
 
 void main() {
-  int place = int(gl_GlobalInvocationID.x);
+  int place = int(global_index());
   if (place >= light_count) return;
   uint index = order[place];
   VirtualLight l = lights[index];

@@ -1,10 +1,9 @@
 // Tiles of pixels, and the list of those that lights are near.
 #ifndef VOLGI_NEAR_LIGHTS_GLSL
 #define VOLGI_NEAR_LIGHTS_GLSL
+#include "screen/gather/interleaved/near_tiles.shared.h"
 #include "screen/lights/resample/near_light.shared.h"
 #include "screen/base/work_list.glsl"
-
-#define NEAR_TILE 8  // pixels on a side
 
 layout(std430, binding = 1) buffer TileList { WorkListHead head; uint listed_tiles[]; };  // a group a tile, in no order
 layout(std430, binding = 0) readonly buffer NearLights { NearLight near_lights[]; };

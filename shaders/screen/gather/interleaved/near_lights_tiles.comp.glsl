@@ -1,32 +1,13 @@
 #version 450 core
-// Which lights are near a tile of pixels, and may have some of its surfaces in front of them. First for large tiles, then
-// for small ones, among what their large one has.
-#include "screen/base/gbuffer.glsl"
+// Which lights are near a tile of pixels, and may have some of its surfaces in front of them. In turn, LARGE: for large
+// tiles, a thread to every 32 lights of one; then for small ones, among what their large one has.
+#include "shared/global_index.shared.h"
 #include "screen/gather/interleaved/near_lights.glsl"
+#include "screen/gather/interleaved/tile_boxes.glsl"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 4) readonly buffer LargeMasks { uint large_masks[]; };
+layout(std430, binding = 4) buffer LargeMasks { uint large_masks[]; };
 uniform int light_count;
-uniform int tile_size;    // pixels on a side
-uniform int large_tiles;  // small tiles on a side of a large one; 0: these are large
-uniform int large_columns;
-
-struct Box {
-  vec3 least, most;
-};
-
-Box box_of(ivec2 first, ivec2 end) {
-  Box box = Box(vec3(3.0e38), vec3(-3.0e38));
-  for (int y = first.y; y < end.y; ++y) {
-    for (int x = first.x; x < end.x; ++x) {
-      vec4 position = texelFetch(position_map, ivec2(x, y), 0);
-      if (position.w == 0.0) continue;
-      box.least = min(box.least, position.xyz);
-      box.most = max(box.most, position.xyz);
-    }
-  }
-  return box;
-}
 
 bool reaches(NearLight light, Box box) {
   vec3 d = clamp(light.position, box.least, box.most) - light.position;
@@ -36,32 +17,44 @@ bool reaches(NearLight light, Box box) {
   return dot(corner - light.position, light.normal) > light.rise_m;
 }
 
+// Those of the 32 lights of a word that `looked_at` has and that reach the box.
+uint reaching(uint looked_at, int word, Box box) {
+  uint mask = 0u;
+  for (uint left = is_empty(box) ? 0u : looked_at; left != 0u; left &= left - 1u) {
+    int k = findLSB(left);
+    if (reaches(near_lights[word * 32 + k], box)) mask |= 1u << k;
+  }
+  return mask;
+}
+
+#ifdef LARGE
+void main() {
+  int index = int(global_index());
+  ivec2 large = large_tiles();
+  if (index >= large.x * large.y * words) return;
+  int tile = index / words, word = index % words;
+  int lights = light_count - word * 32;
+  uint all = lights >= 32 ? 0xffffffffu : (1u << lights) - 1u;
+  large_masks[index] = reaching(all, word, box_of_large(ivec2(tile % large.x, tile / large.x)));
+}
+#else
 void list(int tile) {
   uint slot;
   TAKE_SLOT(head, 1u, slot)
   listed_tiles[slot] = uint(tile);
 }
 
-// Lights to look at.
-uint looked_at(ivec2 tile, int word) {
-  if (large_tiles == 0) return light_count - word * 32 >= 32 ? 0xffffffffu : (1u << (light_count - word * 32)) - 1u;
-  return large_masks[(tile.y / large_tiles * large_columns + tile.x / large_tiles) * words + word];
-}
-
 void main() {
-  int index = int(gl_GlobalInvocationID.x);
+  int index = int(global_index());
   if (index >= tiles.x * tiles.y) return;
-  ivec2 tile = ivec2(index % tiles.x, index / tiles.x);
-  Box box = box_of(tile * tile_size, min((tile + 1) * tile_size, textureSize(position_map, 0)));
-  bool empty = box.least.x > box.most.x, any_light = false;
+  ivec2 large = ivec2(index % tiles.x, index / tiles.x) / LARGE_TILE;
+  int first_of_large = (large.y * large_tiles().x + large.x) * words;
+  bool any_light = false;
   for (int word = 0; word < words; ++word) {
-    uint mask = 0u;
-    for (uint left = empty ? 0u : looked_at(tile, word); left != 0u; left &= left - 1u) {
-      int k = findLSB(left);
-      if (reaches(near_lights[word * 32 + k], box)) mask |= 1u << k;
-    }
+    uint mask = reaching(large_masks[first_of_large + word], word, box_of_small(index));
     masks[index * words + word] = mask;
     any_light = any_light || mask != 0u;
   }
-  if (any_light && large_tiles != 0) list(index);
+  if (any_light) list(index);
 }
+#endif

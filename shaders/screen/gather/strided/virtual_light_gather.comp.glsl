@@ -2,7 +2,7 @@
 // Irradiance of virtual lights, without visibility, at pixels of the G-buffer: the disk-to-point
 // form (docs/conventions.md#virtual-lights), less what negative lights take away. A dispatch takes one block of lights;
 // the first begins the sum, the last ends it.
-// LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
+// NEGATIVE: there are negative lights. LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
 #include "shared/disk_to_point.glsl"
 #include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
@@ -13,10 +13,8 @@
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32f) uniform image2D target;  // irradiance; when the sum ends at full resolution radiance
 layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
-layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[NEGATIVE_LIGHTS_MOST]; };
 uniform int first_light;  // of the block
 uniform int end_light;
-uniform int negative_count;
 uniform int begins;
 uniform int ends;
 #ifdef LISTED
@@ -35,6 +33,10 @@ vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
   return sum;
 }
 
+#ifdef NEGATIVE
+layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[NEGATIVE_LIGHTS_MOST]; };
+uniform int negative_count;
+
 vec3 sum_of_negative_lights(vec3 x, vec3 normal) {
   vec3 sum = vec3(0.0);
   for (int i = 0; i < negative_count; ++i) {
@@ -50,9 +52,10 @@ vec3 sum_of_negative_lights(vec3 x, vec3 normal) {
   }
   return sum;
 }
+#endif
 
 void main() {
-  int index = int(thread_index());
+  int index = int(global_index());
 #ifdef LISTED
   if (index >= int(head.count)) return;
   ivec2 texel = unpack_pixel(listed[index]);
@@ -71,7 +74,9 @@ void main() {
     irradiance = vec4(sum_of_lights(position.xyz, normal, octahedral_decode(normals.zw)), 1.0);
     if (begins == 0) irradiance.rgb += imageLoad(target, texel).rgb;
     if (ends != 0) {
-      if (negative_count > 0) irradiance.rgb = max(irradiance.rgb - sum_of_negative_lights(position.xyz, normal), 0.0);
+#ifdef NEGATIVE
+      irradiance.rgb = max(irradiance.rgb - sum_of_negative_lights(position.xyz, normal), 0.0);
+#endif
       if (stride == 1) irradiance.rgb *= texelFetch(albedo_map, pixel, 0).rgb / PI;
     }
   }

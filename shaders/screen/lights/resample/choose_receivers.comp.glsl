@@ -1,6 +1,7 @@
 #version 450 core
 // Pixels that stand for the picture: the first 256 points of the Halton sequence of bases 2 and 3.
 #include "screen/base/gbuffer.glsl"
+#include "shared/global_index.shared.h"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/base/halton_pixel.glsl"
@@ -9,7 +10,7 @@
 layout(local_size_x = 64) in;
 
 void main() {
-  uint k = gl_GlobalInvocationID.x;
+  uint k = global_index();
   if (k >= uint(RECEIVERS)) return;
   ivec2 pixel = halton_pixel(k, textureSize(position_map, 0));
   vec4 position = texelFetch(position_map, pixel, 0);

@@ -1,22 +1,7 @@
 #version 450 core
-// Sums the candidates' weights from the first on, in one work group and in a fixed order.
+// Sums the candidates' weights from the first on.
 #include "screen/lights/resample/light_candidates.glsl"
-
-layout(local_size_x = 64) in;
-shared vec2 part[64];
-
-void main() {
-  int each = (candidate_count + 63) / 64;
-  int first = first_candidate + int(gl_LocalInvocationIndex) * each;
-  int end = min(first + each, first_candidate + candidate_count);
-  vec2 sum = vec2(0.0);
-  for (int i = first; i < end; ++i) sum += weights[i];
-  part[gl_LocalInvocationIndex] = sum;
-  barrier();
-  sum = vec2(0.0);
-  for (uint t = 0u; t < gl_LocalInvocationIndex; ++t) sum += part[t];
-  for (int i = first; i < end; ++i) {
-    sum += weights[i];
-    weights[i] = sum;
-  }
-}
+#define SUMMED vec2
+#define SUM_FIRST first_candidate
+#define SUM_COUNT candidate_count
+#include "screen/base/sum_in_order.glsl"

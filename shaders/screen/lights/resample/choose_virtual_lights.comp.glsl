@@ -1,5 +1,6 @@
 #version 450 core
 // Systematic resampling: the candidates that equal steps through the summed weights meet.
+#include "shared/global_index.shared.h"
 #include "screen/lights/resample/light_candidates.glsl"
 
 layout(local_size_x = 64) in;
@@ -27,7 +28,7 @@ float place_of(float sum) {
 }
 
 void main() {
-  int k = int(gl_GlobalInvocationID.x);
+  int k = int(global_index());
   if (k >= count) return;
   int candidate = candidate_at((float(k) + 0.5) / float(count));
   float probability = summed_probability(candidate) - summed_probability(candidate - 1);

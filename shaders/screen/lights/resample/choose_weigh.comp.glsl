@@ -1,13 +1,14 @@
 #version 450 core
 // What each candidate sends to the receivers, without visibility.
 #include "shared/disk_to_point.glsl"
+#include "shared/global_index.shared.h"
 #include "shared/luminance.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
 
 layout(local_size_x = 64) in;
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= candidate_count) return;
   VirtualLight l = candidate_lights[first_candidate + i];
   float flux = luminance(l.flux);

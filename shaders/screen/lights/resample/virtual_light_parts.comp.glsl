@@ -1,5 +1,6 @@
 #version 450 core
 // The parts and quarters of every virtual light of one source.
+#include "shared/global_index.shared.h"
 #include "shared/hilbert.shared.h"
 #include "screen/lights/resample/near_light.shared.h"
 #include "shared/octahedral.glsl"
@@ -40,7 +41,7 @@ void include_part(inout NearLight near, inout bool flat_light, VirtualLight part
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= count) return;
   ReflectiveShadowLight l = rsm_lights[max(light, 0)];
   VirtualLight all = virtual_lights[first + i];

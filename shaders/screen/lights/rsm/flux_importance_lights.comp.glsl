@@ -2,6 +2,7 @@
 // Virtual lights of equal luminance: Halton points of the unit square, warped from block to block of the pyramid until
 // they lie as densely as the texels reflect light (Clarberg et al. 2005, hierarchical sample warping, in blocks of 4 x
 // 4). Layers lie side by side along x.
+#include "shared/global_index.shared.h"
 #include "screen/lights/rsm/virtual_light_at.glsl"
 #include "screen/lights/rsm/flux_importance.glsl"
 
@@ -74,7 +75,7 @@ ivec2 choose_texel(ReflectiveShadowLight l, int layer, inout vec2 at) {
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= count) return;
   ReflectiveShadowLight l = rsm_lights[light];
   vec2 at = samples[first_sample + i].xy;

@@ -1,6 +1,7 @@
 #version 450 core
 // One virtual light for each of the equal parts of one light's cone, or of a sun's rectangle: samples of the host's
 // (Halton's), or equal steps along Hilbert's curve (jittered, they were worse: room 14.1 % instead of 10.5 %).
+#include "shared/global_index.shared.h"
 #include "shared/hilbert.shared.h"
 #include "screen/lights/rsm/virtual_light_sample.glsl"
 
@@ -11,7 +12,7 @@ uniform int along_curve;  // 1: along Hilbert's curve
 vec2 place_on_curve(int i) { return hilbert_point(uint((float(i) + 0.5) / float(count) * 4294967296.0)); }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= count) return;
   ReflectiveShadowLight l = rsm_lights[light];
   VirtualLight made;

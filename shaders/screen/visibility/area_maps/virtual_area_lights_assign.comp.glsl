@@ -2,6 +2,7 @@
 // Every light to the cluster with the nearest center, of those equally near the first. Dong et al. 2009, section 5.1.
 #define CENTERS_UNIFORM
 #include "shared/constants.glsl"
+#include "shared/global_index.shared.h"
 #include "screen/visibility/area_maps/virtual_area_lights.glsl"
 
 layout(local_size_x = 64) in;  // kListStep
@@ -41,7 +42,7 @@ uint nearest_cluster(vec3 position, vec3 normal) {
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (iteration > 0 && moved[iteration - 1] == 0u) return;
   if (i >= light_count) {
     cluster_of[i] = NO_VIRTUAL_AREA_LIGHT;

@@ -1,11 +1,12 @@
 #version 450 core
 // Flux that passes through each candidate [W], luminance.
+#include "shared/global_index.shared.h"
 #include "screen/visibility/negative/negative_surface.glsl"
 
 layout(local_size_x = 64) in;
 
 void main() {
-  int candidate = int(gl_GlobalInvocationID.x);
+  int candidate = int(global_index());
   if (candidate >= candidate_count()) return;
   ExitSurface surface = exit_surface(candidate);
   PassedLight sum = PassedLight(vec3(0.0), vec3(0.0));

@@ -2,6 +2,7 @@
 // The cell in front of each virtual light is open, unless it may lie behind a surface: in a corner or on a slope the
 // cell's centre, which decides, can be on the other side, and one such cell would open all that is closed. Light has
 // more than one virtual light.
+#include "shared/global_index.shared.h"
 #include "screen/visibility/negative/open_cells.glsl"
 #include "shared/virtual_light.shared.h"
 
@@ -28,7 +29,7 @@ bool in_front_of_all_sides(ivec3 cell, vec3 light, vec3 normal) {
 }
 
 void main() {
-  int i = int(gl_GlobalInvocationID.x);
+  int i = int(global_index());
   if (i >= light_count || lights[i].flux == vec3(0.0)) return;
   vec3 light = cell_from_world(grid, lights[i].position);
   // So far that the centre of the cell is in front of the light's plane.

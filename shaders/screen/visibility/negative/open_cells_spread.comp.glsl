@@ -1,6 +1,7 @@
 #version 450 core
 // Open cells make those open that follow them along an axis, both ways, up to faces that stop everything. One thread a
 // column.
+#include "shared/global_index.shared.h"
 #include "screen/visibility/negative/open_cells.glsl"
 
 layout(local_size_x = 64) in;
@@ -8,7 +9,7 @@ uniform int axis;
 
 void main() {
   int b = axis_b(axis), c = axis_c(axis);
-  int column = int(gl_GlobalInvocationID.x);
+  int column = int(global_index());
   if (column >= grid.cells[b] * grid.cells[c]) return;
   ivec3 cell = ivec3(0);
   cell[b] = column % grid.cells[b];

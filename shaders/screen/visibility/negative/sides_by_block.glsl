@@ -6,6 +6,7 @@
 #include "screen/visibility/negative/open_cells.glsl"
 
 #define BLOCK_EDGE 8
+#define BLOCK_ROWS (BLOCK_EDGE * BLOCK_EDGE)  // of cells along x
 
 layout(std430, binding = 7) buffer SidesByBlock { uint sides_by_block[]; };
 #ifdef MAKES_THE_LIST
@@ -24,6 +25,16 @@ ivec3 cell_of_block(int block, int k) {
   ivec3 blocks = blocks_of_grid();
   ivec3 at = ivec3(block % blocks.x, block / blocks.x % blocks.y, block / (blocks.x * blocks.y));
   return at * BLOCK_EDGE + ivec3(k % BLOCK_EDGE, k / BLOCK_EDGE % BLOCK_EDGE, k / (BLOCK_EDGE * BLOCK_EDGE));
+}
+
+// None behind the last block.
+uint sides_of_row(int block, int row) {
+  uint count = 0u;
+  for (int k = 0; k < BLOCK_EDGE && block < block_count(); ++k) {
+    ivec3 cell = cell_of_block(block, row * BLOCK_EDGE + k);
+    if (cell_inside(grid, cell)) count += count_bits(cell_sides[cell_index(grid, cell)].y & 63u);
+  }
+  return count;
 }
 
 #endif

@@ -1,17 +1,17 @@
 #version 450 core
-// How many sides each block has. One thread a block.
+// How many sides each block has. A group a block, a row of cells to each of its threads.
+#include "shared/global_index.shared.h"
 #define MAKES_THE_LIST
 #include "screen/visibility/negative/sides_by_block.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = BLOCK_ROWS) in;
+shared uint count;
 
 void main() {
-  int block = int(gl_GlobalInvocationID.x);
-  if (block >= block_count()) return;
-  uint count = 0u;
-  for (int k = 0; k < BLOCK_EDGE * BLOCK_EDGE * BLOCK_EDGE; ++k) {
-    ivec3 cell = cell_of_block(block, k);
-    if (cell_inside(grid, cell)) count += count_bits(cell_sides[cell_index(grid, cell)].y & 63u);
-  }
-  block_starts[block] = count;
+  int block = int(group_index());
+  if (gl_LocalInvocationIndex == 0u) count = 0u;
+  barrier();
+  atomicAdd(count, sides_of_row(block, int(gl_LocalInvocationIndex)));
+  barrier();
+  if (gl_LocalInvocationIndex == 0u && block < block_count()) block_starts[block] = count;
 }

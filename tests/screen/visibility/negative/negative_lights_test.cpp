@@ -262,13 +262,13 @@ std::vector<std::uint32_t> open_cells(const VoxelGridGl& voxels, const VirtualLi
   open.bind_storage(6);
   seed.use();
   seed.set("light_count", lights.reflected);
-  gl::dispatch({lights.reflected, 1, 1}, {64, 1, 1});
+  gl::dispatch_linear(size_t(lights.reflected), 64);
   spread.use();
   for (int i = 0; i < 3 * rounds; ++i) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     spread.set("axis", i % 3);
     const glm::ivec3 cells = voxels.grid.cells;
-    gl::dispatch({cells.x * cells.y * cells.z / cells[i % 3], 1, 1}, {64, 1, 1});
+    gl::dispatch_linear(size_t(cells.x * cells.y * cells.z / cells[i % 3]), 64);
   }
   return open.download<std::uint32_t>(cell_count(voxels.grid));
 }

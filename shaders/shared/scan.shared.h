@@ -1,0 +1,7 @@
+#ifndef VOLGI_SCAN_SHARED_H
+#define VOLGI_SCAN_SHARED_H
+#include "shared/base.shared.h"
+
+#define SCAN_BLOCK 256  // numbers that one group sums
+
+#endif

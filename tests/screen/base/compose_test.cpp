@@ -1,0 +1,38 @@
+// The picture is the sum of the layers that are asked for.
+#include "screen/base/compose.h"
+
+#include <array>
+
+#include "tests/screen/screen_scene.h"
+#include "tests/support/gl_test.h"
+
+namespace volgi::test {
+namespace {
+
+using Compose = GlTest;
+
+TEST_F(Compose, AddsWhatIsAskedFor) {
+  constexpr glm::ivec2 size(16);
+  const Scene scene = stage();
+  gl::PassTimer timer(context().software(), false);
+  const gl::SceneBuffers buffers(scene);
+  screen::GBuffer gbuffer(size);
+  gbuffer.run(buffers, stage_camera(scene), timer);
+  std::array<gl::Texture, 3> layers;
+  for (size_t i = 0; i < 3; ++i) {
+    layers[i] = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
+    layers[i].clear({float(1 << i), 0.0f, 0.0f, 1.0f});
+  }
+  screen::Compose compose(size);
+  const auto sum = [&](screen::LightPart part) {
+    compose.run(gbuffer, {{&layers[0], &layers[1]}, {&layers[2]}}, part, timer);
+    return screen::image_from_texture(compose.radiance());
+  };
+  EXPECT_EQ(sum(screen::LightPart::direct).at(8, 12).r, 3.0f);
+  EXPECT_EQ(sum(screen::LightPart::indirect).at(8, 12).r, 4.0f);
+  EXPECT_EQ(sum(screen::LightPart::full).at(8, 12).r, 7.0f);
+  EXPECT_EQ(sum(screen::LightPart::full).at(0, 0), glm::vec3(0.0f));  // background
+}
+
+}  // namespace
+}  // namespace volgi::test
