@@ -4,10 +4,16 @@
 
 namespace volgi {
 
+namespace {
+
+constexpr size_t kFixedBytes = 2 * sizeof(std::uint32_t);  // a sum of fixed_flux.glsl
+
+}  // namespace
+
 SideFluxGl::SideFluxGl()
     : inject_emitters_(gl::Program::compute("propagation/inject_emitters.comp.glsl")),
       collect_(gl::Program::compute("propagation/collect_flux.comp.glsl")),
-      fixed_lost_(4 * sizeof(std::uint32_t)),
+      fixed_lost_(3 * kFixedBytes),
       lost_(sizeof(glm::vec4)) {
   fixed_lost_.clear();
 }
@@ -17,7 +23,7 @@ void SideFluxGl::begin(const VoxelGridGl& voxels) {
     capacity_ = voxels.side_capacity;
     emitted_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
     punctual_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
-    fixed_ = gl::Buffer(3 * sizeof(std::uint32_t) * size_t(capacity_));
+    fixed_ = gl::Buffer(3 * kFixedBytes * size_t(capacity_));
     fixed_.clear();
   }
   emitted_.clear();
@@ -26,12 +32,11 @@ void SideFluxGl::begin(const VoxelGridGl& voxels) {
 }
 
 void SideFluxGl::begin_source(const VoxelGridGl& voxels, const gl::Program& program, float source_power) {
-  // 2^30 units: the sum of all deposits stays below 2^32 although each is rounded.
-  flux_unit_ = std::max(source_power, 1e-30f) / 1073741824.0f;
+  source_power_ = std::max(source_power, 1e-30f);
   voxels.bind();
   fixed_.bind_storage(12);
   fixed_lost_.bind_storage(13);
-  program.set("flux_unit", flux_unit_);
+  program.set("source_power", source_power_);
 }
 
 void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
@@ -42,7 +47,7 @@ void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   into.bind_storage(9);
   lost_.bind_storage(11);
   collect_.use();
-  collect_.set("flux_unit", flux_unit_);
+  collect_.set("source_power", source_power_);
   gl::dispatch({int(capacity_), 1, 1}, {64, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
