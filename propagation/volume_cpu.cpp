@@ -104,11 +104,15 @@ void VolumeCpu::run() {
   irradiate();
 }
 
+bool VolumeCpu::has_coarse_part() const {
+  return options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start.value_or(true) &&
+         std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
+}
+
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
-  const bool coarse = options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start &&
-                      std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
+  const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);

@@ -46,6 +46,8 @@ class VolumeCpu {
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
   RadianceVolume radiance();
   bool emits() const { return emits_; }
+  /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
+  bool has_coarse_part() const;
   size_t bytes() const;
 
  private:

@@ -29,7 +29,10 @@ constexpr Parameter<Options> kParameters[] = {
      [](Options& o, double v) { o.volume.warm_start = v != 0.0; }},
     {"solver.passes", "amortised: at most this many passes over the volume a frame (until done)", 1, 10000,
      [](Options& o, double v) { o.volume.passes_a_run = int(v); }},
-    {"conservative.coarse", "conservative: 1 carries the tail on a grid of half the edge (1)", 0, 1,
+    {"conservative.coarse",
+     "conservative: 1 carries the end of each order on a grid of half as many cells, on the CPU only (1 there, 0 on the "
+     "GPU)",
+     0, 1,
      [](Options& o, double v) { o.volume.scheme.coarse_start = v != 0.0; }},
     {"vpl.flux", "vpl, negative: 1 samples by reflected flux, 0 by solid angle (0)", 0, 1,
      [](Options& o, double v) {

@@ -29,6 +29,7 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"sides", report.volume.sides},
       {"vpls", report.virtual_lights},
       {"negative_lights", report.negative_lights},
+      {"conservative_coarse", report.volume.coarse_start},
       {"coarse_share", report.coarse_share},
       {"vals", report.area_lights},
       {"backend", report.volume.on_gpu ? "gpu" : "cpu"},

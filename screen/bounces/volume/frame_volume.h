@@ -13,6 +13,7 @@ namespace volgi::screen {
 /// What the volume did, for --stats.
 struct VolumeReport {
   bool on_gpu = false;
+  bool coarse_start = false;  // SchemeOptions::coarse_start, as it was
   glm::ivec3 grid{0};
   size_t sides = 0;
   BounceReport bounces;
@@ -44,7 +45,8 @@ class FrameVolume {
 size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu);
 
 /// @param scene  must outlive the volume.
-/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit.
+/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit; on the GPU as
+///   refuse_on_gpu.
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 

@@ -32,6 +32,7 @@ VolumeReport report_of(const VolumeCpu& volume) {
   VolumeReport r;
   r.grid = volume.grid().cells;
   r.sides = volume.voxels().side_count();
+  r.coarse_start = volume.has_coarse_part();
   r.bounces = volume.report();
   r.lost = volume.flux().lost;
   for (const auto* flux : {&volume.flux().emitted, &volume.flux().punctual}) {

@@ -174,6 +174,7 @@ size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, b
 }
 
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  refuse_on_gpu(options);
   refuse_above_limit(options, volume_bytes_expected(scene, options, true), "GPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnGpu>(scene, options, size);
   return std::make_unique<PulseOnGpu>(scene, options, size);
