@@ -77,11 +77,13 @@ TEST_F(InjectReflectiveShadowMapGl, NarrowConeOnALargeMap) {
   expect_within(inject(scene, 4096), on_the_cpu(scene), 1e-3);
 }
 
-// glTF's falloff is linear in the cosine, squared, from the axis to the cone: its integral is a third of the cone's
-// solid angle where the cone is wide enough (1/(cos inner - cos outer) is at most 1000).
+// glTF's falloff from the axis to the cone is ((cos - cos outer) * scale)^2, scale = 1/(1 - cos outer), at most 1000:
+// its integral is a third of the cone's solid angle where that limit is not met, less below 2.6 degrees.
 TEST_F(InjectReflectiveShadowMapGl, AsTheClosedForm) {
-  for (const double half_angle_deg : {5.0, 30.0, 90.0}) {
-    const double solid_angle = 2.0 * M_PI * (1.0 - std::cos(glm::radians(half_angle_deg))) / 3.0;
+  for (const double half_angle_deg : {0.25, 1.0, 5.0, 30.0, 90.0}) {
+    const double versine = 2.0 * std::pow(std::sin(0.5 * glm::radians(half_angle_deg)), 2.0);
+    const double scale = std::min(1000.0, 1.0 / versine);
+    const double solid_angle = 2.0 * M_PI * scale * scale * versine * versine * versine / 3.0;
     const glm::dvec3 expected = solid_angle * glm::dvec3(kIntensity) * glm::dvec3(kAlbedo);
     SCOPED_TRACE(testing::Message() << half_angle_deg << " degrees");
     expect_within(inject(lit_room(float(half_angle_deg)), 512), expected, 1e-3);
