@@ -27,6 +27,8 @@ class PulseVolume {
   /// -n (conventions: directions are those that light travels).
   RadianceVolume radiance() const;
   size_t bytes() const;
+  /// What bytes() will be where light is everywhere. @param blocks  with surfaces.
+  static size_t bytes_for(const Grid& grid, const SchemeOptions& options, size_t blocks);
 
  private:
   struct Data;

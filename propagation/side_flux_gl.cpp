@@ -6,6 +6,8 @@ namespace volgi {
 
 namespace {
 
+constexpr size_t kFluxBytes = sizeof(glm::vec4);           // of a side
+constexpr size_t kPieceBytes = 3 * sizeof(glm::vec4);      // inject_emitters.comp.glsl
 constexpr size_t kFixedBytes = 2 * sizeof(std::uint32_t);  // a sum of fixed_flux.glsl
 
 }  // namespace
@@ -21,8 +23,8 @@ SideFluxGl::SideFluxGl()
 void SideFluxGl::begin(const VoxelGridGl& voxels) {
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
-    emitted_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
-    punctual_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
+    emitted_ = gl::Buffer(kFluxBytes * size_t(capacity_));
+    punctual_ = gl::Buffer(kFluxBytes * size_t(capacity_));
     fixed_ = gl::Buffer(3 * kFixedBytes * size_t(capacity_));
     fixed_.clear();
   }
@@ -57,7 +59,7 @@ void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<Fl
   if (pieces.empty()) return;
   auto scope = timer.scope("propagation/inject_emitters");
   std::vector<glm::vec4> packed;
-  packed.reserve(3 * pieces.size());
+  packed.reserve(kPieceBytes / sizeof(glm::vec4) * pieces.size());
   glm::dvec3 total(0.0);
   for (const FluxSample& p : pieces) {
     packed.emplace_back(p.position, 0.0f);
@@ -78,6 +80,10 @@ glm::vec3 SideFluxGl::lost() const { return glm::vec3(lost_.download<glm::vec4>(
 
 size_t SideFluxGl::bytes() const {
   return emitted_.bytes() + punctual_.bytes() + fixed_.bytes() + fixed_lost_.bytes() + lost_.bytes() + pieces_.bytes();
+}
+
+size_t SideFluxGl::bytes_for(std::uint32_t side_capacity, size_t pieces) {
+  return (2 * kFluxBytes + 3 * kFixedBytes) * side_capacity + kPieceBytes * pieces + 3 * kFixedBytes + kFluxBytes;
 }
 
 }  // namespace volgi

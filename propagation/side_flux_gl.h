@@ -32,6 +32,8 @@ class SideFluxGl {
   /// Flux that found no side anywhere near [W], for statistics. Waits for the GPU.
   glm::vec3 lost() const;
   size_t bytes() const;
+  /// What bytes() will be. @param pieces  of emitters.
+  static size_t bytes_for(std::uint32_t side_capacity, size_t pieces);
 
  private:
   gl::Program inject_emitters_;

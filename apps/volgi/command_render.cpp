@@ -153,7 +153,7 @@ int RenderCommand::run() const {
       loaded.triangle_count() > 0) {
     const bool on_gpu = screen::runs_on_gpu(options.backend);
     fmt::print("volume: on the {}, about {:.1f} MiB\n", on_gpu ? "GPU" : "CPU",
-               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu)) / 1048576.0);
+               double(screen::volume_bytes_expected(loaded, options.volume, on_gpu, scene.size())) / 1048576.0);
   }
   screen::Frame picture(loaded, options);
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another

@@ -50,5 +50,49 @@ TEST_F(FrameVolumeGl, CoarseGridIsRefusedWhereThereIsNone) {
   }
 }
 
+// What --memory-limit is held against is what is then taken, whatever the scheme, within a tenth.
+TEST_F(FrameVolumeGl, MemoryIsAsPredicted) {
+  struct Case {
+    Scheme scheme;
+    int sh_order, grid_cells;
+  };
+  for (const Case c :
+       {Case{Scheme::ordinates, 1, 32}, Case{Scheme::ordinates, 1, 16}, Case{Scheme::conservative, 1, 32},
+        Case{Scheme::conservative, 2, 32}, Case{Scheme::gaitatzes2010, 1, 32}, Case{Scheme::gaitatzes2010, 2, 16},
+        Case{Scheme::lpv2009, 1, 32}}) {
+    for (const screen::Backend backend : {screen::Backend::gpu, screen::Backend::cpu}) {
+      screen::FrameOptions o = options(c.scheme, backend);
+      o.volume.scheme.sh_order = c.sh_order;
+      o.volume.grid_cells = c.grid_cells;
+      o.volume.iterations = 40;
+      const bool on_gpu = backend == screen::Backend::gpu;
+      const auto predicted = double(screen::volume_bytes_expected(scene_, o.volume, on_gpu, o.size));
+      const auto taken = double(report(scene_, o).memory_bytes);
+      EXPECT_NEAR(predicted / taken, 1.0, 0.1) << "scheme " << int(c.scheme) << " order " << c.sh_order << " grid "
+                                               << c.grid_cells << (on_gpu ? " GPU" : " CPU") << ", taken " << taken;
+    }
+  }
+}
+
+// Between what is taken and half of it every scheme is refused.
+TEST_F(FrameVolumeGl, IsRefusedAboveTheLimit) {
+  for (const Scheme scheme : {Scheme::ordinates, Scheme::conservative, Scheme::gaitatzes2010, Scheme::lpv2009}) {
+    for (const screen::Backend backend : {screen::Backend::gpu, screen::Backend::cpu}) {
+      screen::FrameOptions o = options(scheme, backend);
+      o.volume.grid_cells = 16;
+      const size_t taken = report(scene_, o).memory_bytes;
+      o.volume.memory_limit = taken * 4 / 5;
+      try {
+        screen::Frame(scene_, o);
+        ADD_FAILURE() << "not refused: scheme " << int(scheme);
+      } catch (const Error& e) {
+        EXPECT_EQ(e.code(), ExitCode::over_limit);
+      }
+      o.volume.memory_limit = taken * 6 / 5;
+      EXPECT_NO_THROW(screen::Frame(scene_, o));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace volgi::test
