@@ -20,6 +20,7 @@ shared::PunctualLight to_shared(const Light& light) {
       const float cos_inner = std::cos(light.inner_cone_rad);
       out.cos_outer = std::cos(light.outer_cone_rad);
       out.spot_scale = 1.0f / std::max(0.001f, cos_inner - out.cos_outer);
+      out.outer_versine = 2.0f * std::pow(std::sin(0.5f * light.outer_cone_rad), 2.0f);
       out.spot_offset = -out.cos_outer * out.spot_scale;
       break;
     }

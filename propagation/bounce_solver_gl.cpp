@@ -11,6 +11,12 @@ using shared::BounceState;
 
 static_assert(float(BounceRules::kLeastLoss) == BOUNCE_LEAST_LOSS);
 
+namespace {
+
+constexpr size_t kPartialsBytes = 3 * BOUNCE_PARTIALS * sizeof(glm::vec4);
+
+}  // namespace
+
 BounceSolverGl::BounceSolverGl()
     : source_kernel_(gl::Program::compute("propagation/solver_source.comp.glsl")),
       send_kernel_(gl::Program::compute("propagation/solver_send.comp.glsl")),
@@ -22,7 +28,7 @@ BounceSolverGl::BounceSolverGl()
       direction_kernel_(gl::Program::compute("propagation/conjugate_direction.comp.glsl")),
       end_kernel_(gl::Program::compute("propagation/conjugate_end.comp.glsl")),
       scalars_kernel_(gl::Program::compute("propagation/solver_scalars.comp.glsl")),
-      partials_(3 * BOUNCE_PARTIALS * sizeof(glm::vec4)),
+      partials_(kPartialsBytes),
       state_(sizeof(BounceState)),
       last_count_(sizeof(std::uint32_t)),
       readback_(2 * sizeof(glm::vec4), 3) {
@@ -36,6 +42,10 @@ void BounceSolverGl::make_room(std::uint32_t side_capacity) {
   source_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
   residual_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
   state_.clear();
+}
+
+size_t BounceSolverGl::bytes_for(std::uint32_t side_capacity) {
+  return 2 * sizeof(glm::vec4) * size_t(side_capacity) + kPartialsBytes + sizeof(BounceState);
 }
 
 void BounceSolverGl::run(const gl::Program& kernel, const VoxelGridGl& voxels, const Powers& powers) {

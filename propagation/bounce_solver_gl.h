@@ -42,6 +42,7 @@ class BounceSolverGl {
   Sums pop_sums();
   size_t pending_sums() const { return readback_.pending(); }
   void drop_sums() { readback_.drop_all(); }
+  static size_t bytes_for(std::uint32_t side_capacity);
   size_t bytes() const { return source_.bytes() + residual_.bytes() + partials_.bytes() + state_.bytes(); }
 
  private:

@@ -32,6 +32,8 @@ class Bounces {
   /// Power per side sent in all orders [W]: what the radiance in free space follows from.
   std::vector<glm::vec4> sent(const VoxelGrid& voxels, const SideFlux& flux) const;
   Transport& transport() const { return *transport_; }
+  /// Of the powers of so many sides; the transport's own are apart.
+  static size_t bytes_for(size_t sides) { return 6 * sizeof(glm::vec4) * sides; }
 
  private:
   using Powers = std::vector<glm::vec4>;

@@ -8,6 +8,8 @@ namespace volgi {
 
 namespace {
 
+constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -27,8 +29,12 @@ BouncesGl::BouncesGl(std::unique_ptr<TransportGl> transport)
       sum_sent_(gl::Program::compute("propagation/sum_sent.comp.glsl")),
       sum_partials_(gl::Program::compute("propagation/sum_partials.comp.glsl")),
       sum_(sizeof(glm::vec4)),
-      partials_(64 * sizeof(glm::vec4)),
+      partials_(kPartialsBytes),
       readback_(sizeof(glm::vec4), 2) {}
+
+bool BouncesGl::needs_solver(const BounceRules& rules, bool linear) {
+  return rules.continues() || rules.conjugate_gradients(linear);
+}
 
 void BouncesGl::make_room(const Run& run) {
   const bool amortised = run.rules.passes_a_run.has_value();
@@ -49,7 +55,7 @@ void BouncesGl::make_room(const Run& run) {
     orders_begun_ = 0;
     if (solver_) solver_->drop_sums();
   }
-  if (!run.rules.continues() && !run.rules.conjugate_gradients(linear())) return;
+  if (!needs_solver(run.rules, linear())) return;
   if (!solver_) solver_ = std::make_unique<BounceSolverGl>();
   solver_->make_room(capacity_);
   solver_->forget_other_sides(run.voxels, powers());
@@ -277,6 +283,11 @@ gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) co
   gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return all;
+}
+
+size_t BouncesGl::bytes_for(std::uint32_t side_capacity, const BounceRules& rules, bool linear) {
+  const size_t solver = needs_solver(rules, linear) ? BounceSolverGl::bytes_for(side_capacity) : 0;
+  return 4 * sizeof(glm::vec4) * size_t(side_capacity) + sizeof(glm::vec4) + kPartialsBytes + solver;
 }
 
 size_t BouncesGl::bytes() const {

@@ -35,9 +35,12 @@ class BouncesGl {
   gl::Buffer sent(const VoxelGridGl& voxels, const SideFluxGl& flux) const;
   TransportGl& transport() const { return *transport_; }
   size_t bytes() const;
+  /// What bytes() will be without the transport's. @param linear  of the transport.
+  static size_t bytes_for(std::uint32_t side_capacity, const BounceRules& rules, bool linear);
 
  private:
   struct Run;
+  static bool needs_solver(const BounceRules& rules, bool linear);
   void make_room(const Run& run);
   void next_order(const VoxelGridGl& voxels, const gl::Buffer& total, const gl::Buffer* source, bool already_reflected);
   void request_sent(const VoxelGridGl& voxels);

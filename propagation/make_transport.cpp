@@ -11,7 +11,7 @@ std::unique_ptr<Transport> make_transport(const VoxelGrid& voxels, const SchemeO
       return std::make_unique<OrdinatesTransport>(voxels, choose_ordinates(voxels.grid().cells, options));
     case Scheme::conservative:
       return std::make_unique<ConservativeTransport>(voxels, options.sh_order,
-                                                     options.coarse_start ? half_voxels : nullptr);
+                                                     options.coarse_start.value_or(true) ? half_voxels : nullptr);
     case Scheme::gaitatzes2010:
     case Scheme::lpv2009:
       break;

@@ -302,6 +302,15 @@ RadianceVolume PulseVolume::radiance() const {
   return data_->sum.radiance(data_->voxels.grid(), data_->scheme == Scheme::gaitatzes2010 ? -1.0f : 1.0f);
 }
 
+size_t PulseVolume::bytes_for(const Grid& grid, const SchemeOptions& options, size_t blocks) {
+  const LeafNumbers numbers(grid.cells);
+  const int coefficients = options.sh_order == 1 ? 4 : 9;
+  const bool bounces = options.scheme == Scheme::gaitatzes2010;  // light is added up where surfaces are
+  return LobeWave::bytes_for(numbers, coefficients) +
+         LobeSum::bytes_for(numbers, coefficients, bounces ? blocks : size_t(numbers.count())) +
+         (bounces ? blocks * sizeof(LeafSurfaces) : 0);
+}
+
 size_t PulseVolume::bytes() const {
   size_t surfaces = 0;
   for (const auto& s : data_->surfaces) surfaces += s ? sizeof(LeafSurfaces) : 0;

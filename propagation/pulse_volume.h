@@ -27,6 +27,8 @@ class PulseVolume {
   /// -n (directions are those that light travels: docs/conventions.md#spherical-harmonics).
   RadianceVolume radiance() const;
   size_t bytes() const;
+  /// What bytes() will be where light is everywhere. @param blocks  with surfaces.
+  static size_t bytes_for(const Grid& grid, const SchemeOptions& options, size_t blocks);
 
  private:
   struct Data;

@@ -10,6 +10,14 @@ namespace {
 
 constexpr glm::ivec3 kLocal{8, 8, 4};  // pulse_*.comp.glsl, add_radiance.comp.glsl
 
+constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+
+/// A state of lobes: the three bands' stacked in z (lobes.glsl).
+glm::ivec3 lobe_texels(const Grid& grid, int order) {
+  return {grid.cells.x, grid.cells.y, (order == 1 ? 3 : 7) * grid.cells.z};
+}
+int coefficients(int order) { return order == 1 ? 4 : 9; }
+
 const SchemeOptions& checked(const SchemeOptions& options) {
   if (carries_sides(options.scheme)) {
     throw Error(ExitCode::usage, "a pulse without orders is what lpv2009 and gaitatzes2010 are; use one of them");
@@ -28,13 +36,12 @@ PulseVolumeGl::PulseVolumeGl(const Grid& grid, const SchemeOptions& options)
       sum_sent_(gl::Program::compute("propagation/sum_sent.comp.glsl")),
       sum_lobes_(compile("sum_in_flight")),
       sum_partials_(gl::Program::compute("propagation/sum_partials.comp.glsl")),
-      radiance_(grid, options.sh_order == 1 ? 4 : 9),
-      partials_(64 * sizeof(glm::vec4)),
+      radiance_(grid, coefficients(options.sh_order)),
+      partials_(kPartialsBytes),
       sum_(sizeof(glm::vec4)),
       readback_(sizeof(glm::vec4), 2) {
-  const int texels = options.sh_order == 1 ? 3 : 7;  // a cell (lobes.glsl)
   for (gl::Texture* t : {&lobes_[0], &lobes_[1], &accumulated_[0], &accumulated_[1]}) {
-    *t = gl::Texture::make_3d(GL_RGBA32F, {grid.cells.x, grid.cells.y, texels * grid.cells.z});
+    *t = gl::Texture::make_3d(GL_RGBA32F, lobe_texels(grid, options.sh_order));
   }
 }
 
@@ -121,9 +128,10 @@ void PulseVolumeGl::read_out() {
   dispatch_cells();
 }
 
-size_t PulseVolumeGl::bytes() const {
-  const size_t texels = options_.sh_order == 1 ? 3 : 7;
-  return 4 * 16 * texels * cell_count(grid_) + radiance_.bytes() + partials_.bytes();
+size_t PulseVolumeGl::bytes_for(const Grid& grid, int sh_order) {
+  const glm::ivec3 texels = lobe_texels(grid, sh_order);
+  const size_t lobes = sizeof(glm::vec4) * size_t(texels.x) * size_t(texels.y) * size_t(texels.z);
+  return 4 * lobes + RadianceVolumeGl::bytes_for(grid, coefficients(sh_order)) + kPartialsBytes;
 }
 
 }  // namespace volgi

@@ -30,7 +30,8 @@ class PulseVolumeGl {
 
   /// Of the last run, in the frame that pixels read: irradiance on a surface of normal n is the cosine lobe about -n.
   const RadianceVolumeGl& radiance() const { return radiance_; }
-  size_t bytes() const;
+  size_t bytes() const { return bytes_for(grid_, options_.sh_order); }
+  static size_t bytes_for(const Grid& grid, int sh_order);
 
  private:
   gl::Program compile(const char* shader) const;

@@ -19,7 +19,8 @@ struct RadianceVolumeGl {
 
   /// By coefficient, then by cell_index. Waits for the GPU.
   std::vector<std::vector<glm::vec4>> download() const;
-  size_t bytes() const { return 16 * size_t(coefficients) * cell_count(grid); }
+  size_t bytes() const { return bytes_for(grid, coefficients); }
+  static size_t bytes_for(const Grid& grid, int coefficients) { return 16 * size_t(coefficients) * cell_count(grid); }
 };
 
 }  // namespace volgi

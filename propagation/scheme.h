@@ -21,7 +21,9 @@ struct SchemeOptions {
   std::optional<Ordinates> ordinates;  // none: what goes with the grid
   int sh_order = 1;                    // of the three SH schemes: 1 or 2
   bool constant_albedo = false;        // gaitatzes2010: 0.5 after the first bounce, as the paper has it
-  bool coarse_start = true;            // conservative: a grid of half the edge is solved first
+  /// conservative: the end of every pulse is carried on a grid of twice the cells' edge. None: where the backend has
+  /// that, which is the CPU; asked for on the GPU it is refused (refuse_on_gpu).
+  std::optional<bool> coarse_start;
 };
 
 /// Whether the scheme carries power from sides to sides order by order (warm start, --bounces); the papers' two do not.

@@ -4,10 +4,18 @@
 
 namespace volgi {
 
+namespace {
+
+constexpr size_t kFluxBytes = sizeof(glm::vec4);           // of a side
+constexpr size_t kPieceBytes = 3 * sizeof(glm::vec4);      // inject_emitters.comp.glsl
+constexpr size_t kFixedBytes = 2 * sizeof(std::uint32_t);  // a sum of fixed_flux.glsl
+
+}  // namespace
+
 SideFluxGl::SideFluxGl()
     : inject_emitters_(gl::Program::compute("propagation/inject_emitters.comp.glsl")),
       collect_(gl::Program::compute("propagation/collect_flux.comp.glsl")),
-      fixed_lost_(4 * sizeof(std::uint32_t)),
+      fixed_lost_(3 * kFixedBytes),
       lost_(sizeof(glm::vec4)) {
   fixed_lost_.clear();
 }
@@ -15,9 +23,9 @@ SideFluxGl::SideFluxGl()
 void SideFluxGl::begin(const VoxelGridGl& voxels) {
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
-    emitted_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
-    punctual_ = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
-    fixed_ = gl::Buffer(3 * sizeof(std::uint32_t) * size_t(capacity_));
+    emitted_ = gl::Buffer(kFluxBytes * size_t(capacity_));
+    punctual_ = gl::Buffer(kFluxBytes * size_t(capacity_));
+    fixed_ = gl::Buffer(3 * kFixedBytes * size_t(capacity_));
     fixed_.clear();
   }
   emitted_.clear();
@@ -26,12 +34,11 @@ void SideFluxGl::begin(const VoxelGridGl& voxels) {
 }
 
 void SideFluxGl::begin_source(const VoxelGridGl& voxels, const gl::Program& program, float source_power) {
-  // 2^30 units: the sum of all deposits stays below 2^32 although each is rounded.
-  flux_unit_ = std::max(source_power, 1e-30f) / 1073741824.0f;
+  source_power_ = std::max(source_power, 1e-30f);
   voxels.bind();
   fixed_.bind_storage(12);
   fixed_lost_.bind_storage(13);
-  program.set("flux_unit", flux_unit_);
+  program.set("source_power", source_power_);
 }
 
 void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
@@ -42,7 +49,7 @@ void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   into.bind_storage(9);
   lost_.bind_storage(11);
   collect_.use();
-  collect_.set("flux_unit", flux_unit_);
+  collect_.set("source_power", source_power_);
   gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
@@ -52,7 +59,7 @@ void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<Fl
   if (pieces.empty()) return;
   auto scope = timer.scope("propagation/inject_emitters");
   std::vector<glm::vec4> packed;
-  packed.reserve(3 * pieces.size());
+  packed.reserve(kPieceBytes / sizeof(glm::vec4) * pieces.size());
   glm::dvec3 total(0.0);
   for (const FluxSample& p : pieces) {
     packed.emplace_back(p.position, 0.0f);
@@ -73,6 +80,10 @@ glm::vec3 SideFluxGl::lost() const { return glm::vec3(lost_.download<glm::vec4>(
 
 size_t SideFluxGl::bytes() const {
   return emitted_.bytes() + punctual_.bytes() + fixed_.bytes() + fixed_lost_.bytes() + lost_.bytes() + pieces_.bytes();
+}
+
+size_t SideFluxGl::bytes_for(std::uint32_t side_capacity, size_t pieces) {
+  return (2 * kFluxBytes + 3 * kFixedBytes) * side_capacity + kPieceBytes * pieces + 3 * kFixedBytes + kFluxBytes;
 }
 
 }  // namespace volgi

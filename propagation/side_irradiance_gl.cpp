@@ -32,6 +32,10 @@ void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, co
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
+size_t SideIrradianceGl::bytes_for(std::uint32_t side_capacity) {
+  return 4 * sizeof(glm::vec4) * size_t(side_capacity);
+}
+
 size_t SideIrradianceGl::bytes() const {
   return raw_direct_.bytes() + raw_indirect_.bytes() + direct_.bytes() + indirect_.bytes();
 }

@@ -16,6 +16,7 @@ class SideIrradianceGl {
   const gl::Buffer& direct() const { return direct_; }      // emission's first arrival; vec4 a side
   const gl::Buffer& indirect() const { return indirect_; }  // everything after
   size_t bytes() const;
+  static size_t bytes_for(std::uint32_t side_capacity);
 
  private:
   gl::Program side_irradiance_, smooth_;

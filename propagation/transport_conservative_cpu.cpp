@@ -233,6 +233,14 @@ RadianceVolume ConservativeTransport::radiance(std::span<const glm::vec4> sent) 
   return sum.radiance(voxels_.grid());
 }
 
+size_t ConservativeTransport::bytes_for(const Grid& grid, int order, const ExpectedSides& expected) {
+  const LeafNumbers numbers(grid.cells);
+  const size_t rows = expected.sides / 3;  // of 8 cells, on one face: some hold one side, some eight
+  return LobeWave::bytes_for(numbers, coefficients(order)) +
+         size_t(numbers.count()) * sizeof(std::unique_ptr<LeafWalls>) + expected.blocks * sizeof(LeafWalls) +
+         rows * sizeof(SideRow) + expected.sides * sizeof(LeafWalls::SideThere);
+}
+
 size_t ConservativeTransport::bytes() const {
   size_t walls = 0;
   for (const auto& w : walls_) {

@@ -8,6 +8,7 @@
 #include "propagation/lobes/sh_lobes_walls.h"
 #include "propagation/lobes/sh_lobes_wave.h"
 #include "propagation/transport.h"
+#include "voxel/expected_sides.h"
 
 namespace volgi {
 
@@ -35,6 +36,8 @@ class ConservativeTransport : public Transport {
   bool linear() const override { return false; }
   RadianceVolume radiance(std::span<const glm::vec4> sent) override;
   size_t bytes() const override;
+  /// What bytes() will be where light is everywhere; without the coarse part.
+  static size_t bytes_for(const Grid& grid, int order, const ExpectedSides& expected);
 
   // The parts of advance(), for tests and benchmarks.
   /// One pass. @param reflect_hits  what sides receive is sent on at once.

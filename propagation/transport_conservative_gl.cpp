@@ -11,6 +11,13 @@ namespace {
 constexpr glm::ivec3 kLocal{8, 8, 4};  // propagate.comp.glsl, emit.comp.glsl
 constexpr int kBatch = 8;  // passes between two looks at the power in flight: a look costs a third of a pass
 
+constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+
+/// A state of lobes: the three bands' stacked in z (lobes.glsl).
+glm::ivec3 lobe_texels(const Grid& grid, int order) {
+  return {grid.cells.x, grid.cells.y, (order == 1 ? 3 : 7) * grid.cells.z};
+}
+
 // A pulse that has not ended after 64 crossings of the grid never will (a closed box without losses).
 int most_passes(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.z); }
 
@@ -22,7 +29,7 @@ ConservativeTransportGl::ConservativeTransportGl(const Grid& grid, int sh_order)
       propagate_(compile("propagate")),
       sum_lobes_(compile("sum_in_flight")),
       sum_partials_(gl::Program::compute("propagation/sum_partials.comp.glsl")),
-      partials_(64 * sizeof(glm::vec4)),
+      partials_(kPartialsBytes),
       sum_(sizeof(glm::vec4)),
       readback_(sizeof(glm::vec4), 2),
       grid_(grid) {
@@ -122,7 +129,7 @@ glm::vec3 ConservativeTransportGl::in_flight(const VoxelGridGl& voxels) {
 
 void ConservativeTransportGl::make_lobes() {
   for (gl::Texture& t : lobes_) {
-    t = gl::Texture::make_3d(GL_RGBA32F, {grid_.cells.x, grid_.cells.y, texels() * grid_.cells.z});
+    t = gl::Texture::make_3d(GL_RGBA32F, lobe_texels(grid_, order_));
   }
 }
 
@@ -153,8 +160,9 @@ RadianceVolumeGl ConservativeTransportGl::radiance(const VoxelGridGl& voxels, co
   return result;
 }
 
-size_t ConservativeTransportGl::bytes() const {
-  return partials_.bytes() + 2 * 16 * size_t(texels()) * cell_count(grid_);
+size_t ConservativeTransportGl::bytes_for(const Grid& grid, int sh_order) {
+  const glm::ivec3 texels = lobe_texels(grid, sh_order);
+  return kPartialsBytes + 2 * sizeof(glm::vec4) * size_t(texels.x) * size_t(texels.y) * size_t(texels.z);
 }
 
 }  // namespace volgi

@@ -30,7 +30,8 @@ class ConservativeTransportGl : public TransportGl, public ResumableGl {
                      const BounceRules& rules, BounceReport& report) override;
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return true; }
-  size_t bytes() const override;
+  size_t bytes() const override { return bytes_for(grid_, order_); }
+  static size_t bytes_for(const Grid& grid, int sh_order);
 
   // The parts of carry(), for tests.
   void emit(const VoxelGridGl& voxels, const gl::Buffer& sent);
@@ -45,8 +46,6 @@ class ConservativeTransportGl : public TransportGl, public ResumableGl {
   glm::vec3 pop_in_flight();
 
   gl::Program compile(const char* shader) const;
-  int texels() const { return order_ == 1 ? 3 : 7; }  // a cell (lobes.glsl)
-
   int order_;
   gl::Program emit_, propagate_, sum_lobes_, sum_partials_;
   std::optional<gl::Program> add_radiance_;  // compiled when asked for

@@ -49,10 +49,17 @@ void set_lane(sweep::Constants& c, int lane, const OrdinateSet& set, size_t i, O
   for (int m = 0; m < 4; ++m) c.sh[m][lane] = sh[m];
 }
 
+/// For so many directions of an octant.
+int octets_of(int directions) {
+  int octets = 0;
+  while (2 * octets + 2 * (octets / 3) < directions) ++octets;
+  return octets;
+}
+
 sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float cell_size_m) {
   sweep::Constants c;
   const int directions = int(set.directions.size());
-  while (2 * c.octets + 2 * (c.octets / 3) < directions) ++c.octets;
+  c.octets = octets_of(directions);
   assert(c.octets <= sweep::kMostOctets);
   const int in_quads = std::min(directions, 2 * c.octets);
   for (int d = 0; d < in_quads; ++d) {
@@ -288,6 +295,15 @@ void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* lea
     y_lit = any_light(b.y, face) ? 1 : 0;
     z_lit = any_light(b.z, face) ? 1 : 0;
   }
+}
+
+size_t OrdinatesTransport::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
+  const glm::ivec3 n = leaf_blocks(grid);
+  const size_t flows = 8 * size_t(n.x) * size_t(n.y + n.z);
+  return sizeof(OrdinatesTransport) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
+         size_t(n.x) * size_t(n.y) * size_t(n.z) * sizeof(int) +
+         expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) +
+         flows * (face_floats(octets_of(choice.directions / 8)) * sizeof(float) + 1);
 }
 
 size_t OrdinatesTransport::bytes() const {

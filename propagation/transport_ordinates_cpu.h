@@ -7,6 +7,7 @@
 #include "propagation/ordinates.h"
 #include "propagation/sweep/sweep_kernel.h"
 #include "propagation/transport.h"
+#include "voxel/expected_sides.h"
 
 namespace volgi {
 
@@ -33,6 +34,8 @@ class OrdinatesTransport : public Transport {
   /// One more sweep, octant after octant. Cells that no light reached are inactive.
   RadianceVolume radiance(std::span<const glm::vec4> sent) override;
   size_t bytes() const override;
+  /// What bytes() will be.
+  static size_t bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected);
   OrdinateChoice choice() const { return choice_; }
 
  private:
@@ -48,7 +51,8 @@ class OrdinatesTransport : public Transport {
   void pack_sides();
   void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
   void sweep_row(int octant, int y, int z, RadianceLeaves* leaves);
-  size_t face_floats() const { return sweep::kBlockFace * size_t(constants_.octets) * sweep::kOctet; }
+  size_t face_floats() const { return face_floats(constants_.octets); }
+  static size_t face_floats(int octets) { return sweep::kBlockFace * size_t(octets) * sweep::kOctet; }
 
   const VoxelGrid& voxels_;
   OrdinateChoice choice_;

@@ -8,12 +8,21 @@ namespace volgi {
 
 namespace {
 
-constexpr int kSidesARow = 1024;    // side_texel.glsl
-constexpr int kColumnsARow = 1024;  // sweep.comp.glsl
+constexpr int kSidesARow = 1024;   // side_texel.glsl
+constexpr int kArrivedARow = 256;  // side_texel.glsl
+constexpr int kOctantsOfSide = 4;  // that can reach it
+constexpr int kBlocksARow = 1024;  // sweep.comp.glsl
+constexpr int kBlock = 8;          // sweep.comp.glsl: cells on an edge
 
 int rows(size_t count, int a_row) { return std::max(1, int((count + size_t(a_row) - 1) / size_t(a_row))); }
 
-int texels_of(int directions) { return (3 * directions / 8 + 3) / 4; }
+int quads_of(int directions) { return (directions / 8 + 3) / 4; }
+
+/// Texels that sweep.comp.glsl needs for a plane of faces across `axis`.
+glm::ivec3 plane_texels(const Grid& grid, int lanes, int axis) {
+  const glm::ivec3 n = grid.cells;
+  return {8 * lanes, axis == 0 ? n.y : n.x, axis == 2 ? n.y : n.z};
+}
 
 }  // namespace
 
@@ -22,73 +31,64 @@ OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, const SchemeOptions
                            choose_ordinates(grid.cells, options).rule) {}
 
 OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, int directions, Ordinates rule)
-    : grid_(grid), rule_(rule), texels_(texels_of(directions)), shares_(pack_shares(ordinate_set(directions))) {
-  prepare_ = gl::Program::compute("propagation/prepare_sweep.comp.glsl");
-  sweep_ = gl::Program::compute("propagation/sweep.comp.glsl", defines(false));
-  collect_ = gl::Program::compute("propagation/collect_octants.comp.glsl");
-  const int faces = rule == Ordinates::characteristic ? 3 : 1;
-  for (gl::Texture& t : planes_) {
-    t = gl::Texture::make_2d_array(GL_RGBA32F, grid.cells.x, grid.cells.y, 8 * texels_ * faces);
-    t.clear({0.0f, 0.0f, 0.0f, 0.0f});  // what lies outside the grid is read, and counts zero times
-  }
+    : grid_(grid),
+      choice_{directions, rule},
+      lanes_(3 * quads_of(directions)),
+      prepare_(gl::Program::compute("propagation/prepare_sweep.comp.glsl")),
+      collect_(gl::Program::compute("propagation/collect_octants.comp.glsl")),
+      shares_(pack_shares(ordinate_set(directions))) {
+  sweep_ = gl::Program::compute("propagation/sweep.comp.glsl",
+                                {fmt::format("QUADS {}", quads_of(directions)),
+                                 fmt::format("CHARACTERISTIC {}", int(rule == Ordinates::characteristic))});
+  for (int axis = 0; axis < 3; ++axis)
+    faces_[axis] = gl::Texture::make_3d(GL_RGBA32F, plane_texels(grid, lanes_, axis));
   cell_word_ = gl::Texture::make_3d(GL_R32UI, grid.cells);
-  list_diagonals();
+  list_blocks();
 }
 
-std::vector<std::string> OrdinatesTransportGl::defines(bool radiance) const {
-  return {fmt::format("TEXELS {}", texels_), fmt::format("CHARACTERISTIC {}", int(rule_ == Ordinates::characteristic)),
-          fmt::format("RADIANCE {}", int(radiance))};
-}
-
-/// SharesBlock of sweep.comp.glsl.
+/// QuadShares of sweep.comp.glsl.
 gl::Buffer OrdinatesTransportGl::pack_shares(const OrdinateSet& set) const {
-  const bool characteristic = rule_ == Ordinates::characteristic;
-  const size_t n = 3 * size_t(texels_);
-  std::vector<glm::vec4> emitted(n), downwind(characteristic ? 3 * n : n), weight(n), direction(n);
-  for (size_t value = 0; value < 3 * set.directions.size(); ++value) {
-    const size_t d = value / 3, k = value / 4;
-    const auto component = glm::length_t(value % 4);
-    const CellTransfer transfer = cell_transfer(rule_, set.directions[d]);
-    const glm::vec3 per_watt = radiance_per_watt(set, d, rule_, grid_.cell_size_m);
+  const bool characteristic = choice_.rule == Ordinates::characteristic;
+  const size_t a_quad = characteristic ? 12 : 6;
+  std::vector<glm::vec4> shares(a_quad * size_t(lanes_ / 3), glm::vec4(0.0f));
+  for (size_t d = 0; d < set.directions.size(); ++d) {
+    const CellTransfer transfer = cell_transfer(choice_.rule, set.directions[d]);
+    const auto component = glm::length_t(d % 4);
+    glm::vec4* const quad = &shares[a_quad * (d / 4)];
     for (int a = 0; a < 3; ++a) {
-      const size_t at = 3 * k + size_t(a);
-      emitted[at][component] = set.emitted_share(d)[a];
-      weight[at][component] = per_watt[a];
-      direction[at][component] = set.directions[d][a];
-      if (!characteristic) downwind[at][component] = transfer.share[0][a];  // the same from every face
-      for (int b = 0; characteristic && b < 3; ++b) downwind[3 * at + size_t(b)][component] = transfer.share[a][b];
+      quad[a][component] = set.emitted_share(d)[a];
+      if (!characteristic) quad[3 + a][component] = transfer.share[0][a];  // the same from every face
+      for (int b = 0; characteristic && b < 3; ++b) quad[3 + 3 * a + b][component] = transfer.share[a][b];
     }
   }
-  for (const std::vector<glm::vec4>* part : {&downwind, &weight, &direction}) {
-    emitted.insert(emitted.end(), part->begin(), part->end());
-  }
-  return gl::Buffer(emitted);
+  return gl::Buffer(shares);
 }
 
-/// The cells of every diagonal i+j+k beside each other, so that none of a dispatch's invocations has nothing to do.
-void OrdinatesTransportGl::list_diagonals() {
-  const glm::ivec3 n = grid_.cells;
-  std::vector<std::uint32_t> columns;
+/// The blocks of every diagonal i+j+k beside each other.
+void OrdinatesTransportGl::list_blocks() {
+  const glm::ivec3 n = (grid_.cells + (kBlock - 1)) / kBlock;
+  std::vector<std::uint32_t> blocks;
   for (int diagonal = 0; diagonal <= n.x + n.y + n.z - 3; ++diagonal) {
-    first_cell_.push_back(int(columns.size()));
-    for (int j = std::max(0, diagonal - (n.x - 1) - (n.z - 1)); j <= std::min(n.y - 1, diagonal); ++j) {
-      for (int i = std::max(0, diagonal - j - (n.z - 1)); i <= std::min(n.x - 1, diagonal - j); ++i) {
-        columns.push_back(std::uint32_t(i) | (std::uint32_t(j) << 16));
+    first_block_.push_back(int(blocks.size()));
+    for (int k = 0; k < n.z; ++k) {
+      for (int j = 0; j < n.y; ++j) {
+        const int i = diagonal - j - k;
+        if (i >= 0 && i < n.x) blocks.push_back(std::uint32_t(i) | std::uint32_t(j) << 8 | std::uint32_t(k) << 16);
       }
     }
   }
-  first_cell_.push_back(int(columns.size()));
-  const int height = rows(columns.size(), kColumnsARow);
-  columns.resize(size_t(height) * kColumnsARow);
-  column_map_ = gl::Texture::make_2d(GL_R32UI, kColumnsARow, height);
-  glTextureSubImage2D(column_map_.id(), 0, 0, 0, kColumnsARow, height, GL_RED_INTEGER, GL_UNSIGNED_INT, columns.data());
+  first_block_.push_back(int(blocks.size()));
+  const int height = rows(blocks.size(), kBlocksARow);
+  blocks.resize(size_t(height) * kBlocksARow);
+  block_list_ = gl::Texture::make_2d(GL_R32UI, kBlocksARow, height);
+  glTextureSubImage2D(block_list_.id(), 0, 0, 0, kBlocksARow, height, GL_RED_INTEGER, GL_UNSIGNED_INT, blocks.data());
 }
 
 void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& sent) {
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
     side_light_ = gl::Texture::make_2d(GL_RGBA32F, kSidesARow, rows(capacity_, kSidesARow));
-    arrived_ = gl::Texture::make_2d(GL_RGBA32F, 4 * kSidesARow, rows(capacity_, kSidesARow));
+    arrived_ = gl::Texture::make_2d(GL_R32F, kArrivedARow * kOctantsOfSide * lanes_, rows(capacity_, kArrivedARow));
   }
   voxels.bind();
   sent.bind_storage(7);
@@ -97,53 +97,54 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
   prepare_.use();
   gl::dispatch_linear(std::max<size_t>(capacity_, cell_count(grid_)), 64);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-  shares_.bind_uniform(1);
-  cell_word_.bind(1);
-  side_light_.bind(2);
-  column_map_.bind(3);
 }
 
-void OrdinatesTransportGl::sweep(const gl::Program& program, int first_octant, int octants) {
-  program.use();
-  program.set("first_octant", first_octant);
-  for (size_t diagonal = 0; diagonal + 1 < first_cell_.size(); ++diagonal) {
-    const int count = first_cell_[diagonal + 1] - first_cell_[diagonal];
-    program.set("diagonal", int(diagonal));
-    program.set("first_cell", first_cell_[diagonal]);
-    program.set("cell_count", count);
-    planes_[(diagonal + 1) & 1].bind(0);
-    planes_[diagonal & 1].bind_image(0, GL_WRITE_ONLY);
-    gl::dispatch({count, octants, 1}, {64, 1, 1});
-    glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+void OrdinatesTransportGl::sweep() {
+  shares_.bind_storage(9);
+  cell_word_.bind(1);
+  side_light_.bind(2);
+  block_list_.bind(3);
+  for (GLuint axis = 0; axis < 3; ++axis) faces_[axis].bind_image(axis, GL_READ_WRITE);
+  arrived_.bind_image(3, GL_WRITE_ONLY);
+  sweep_.use();
+  for (size_t diagonal = 0; diagonal + 1 < first_block_.size(); ++diagonal) {
+    sweep_.set("first_block", first_block_[diagonal]);
+    glDispatchCompute(GLuint(first_block_[diagonal + 1] - first_block_[diagonal]), 1, 1);
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void OrdinatesTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                                  const BounceRules& /*rules*/, BounceReport& report) {
   prepare(voxels, sent);
-  arrived_.bind_image(1, GL_WRITE_ONLY);
-  sweep(sweep_, 0, 8);
+  sweep();
   arrived_.bind(0);
   received.bind_storage(6);
   collect_.use();
+  collect_.set("lanes", lanes_);
   gl::dispatch_linear(capacity_, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   report.passes += 1;
 }
 
 RadianceVolumeGl OrdinatesTransportGl::radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) {
-  if (!read_out_) read_out_ = gl::Program::compute("propagation/sweep.comp.glsl", defines(true));
-  RadianceVolumeGl result(grid_, 4);
+  if (!read_out_) read_out_ = std::make_unique<SweepRadianceGl>(grid_, ordinate_set(choice_.directions), choice_.rule);
   prepare(voxels, sent);
-  result.sh.bind_image(1, GL_READ_WRITE);
-  for (int octant = 0; octant < 8; ++octant) sweep(*read_out_, octant, 1);  // no two may write one cell
-  return result;
+  return read_out_->run(cell_word_, side_light_);
 }
 
-size_t OrdinatesTransportGl::bytes() const {
-  const size_t columns = size_t(grid_.cells.x) * size_t(grid_.cells.y);
-  const size_t layers = 8 * size_t(texels_) * (rule_ == Ordinates::characteristic ? 3 : 1);
-  return 2 * 16 * columns * layers + 8 * cell_count(grid_) + 80 * size_t(capacity_) + shares_.bytes();
+size_t OrdinatesTransportGl::bytes() const { return bytes_for(grid_, choice_, capacity_); }
+
+size_t OrdinatesTransportGl::bytes_for(const Grid& grid, OrdinateChoice choice, std::uint32_t side_capacity) {
+  const int lanes = 3 * quads_of(choice.directions);
+  size_t sum = sizeof(std::uint32_t) * cell_count(grid);
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::ivec3 texels = plane_texels(grid, lanes, axis);
+    sum += sizeof(glm::vec4) * size_t(texels.x) * size_t(texels.y) * size_t(texels.z);
+  }
+  const size_t a_side = sizeof(glm::vec4) + sizeof(float) * size_t(kOctantsOfSide * lanes);
+  return sum + a_side * side_capacity;
 }
 
 }  // namespace volgi

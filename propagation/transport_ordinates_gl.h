@@ -1,11 +1,12 @@
 #pragma once
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "core/gl/objects.h"
 #include "core/gl/program.h"
 #include "propagation/ordinates.h"
 #include "propagation/scheme.h"
+#include "propagation/sweep_radiance_gl.h"
 #include "propagation/transport_gl.h"
 
 namespace volgi {
@@ -14,9 +15,11 @@ namespace volgi {
 /// leaves through the downwind faces by the step or the characteristic rule (ordinates.h, cell_transfer), and one sweep
 /// per octant solves an order exactly. Conserves, is positive, linear and reciprocal: lights superpose. Lateral spread
 /// stands in for the directions between (docs/theory.md#ordinates, with what it cannot do: narrow ducts, sharp first
-/// bounces). Cost of an order: one visit of each cell per octant in x+y+z-2 dispatches; a visit reads three and writes
-/// one (step) or three (characteristic) texels of four numbers per four numbers of direction and band. Memory: two
-/// diagonal planes per octant, 8 bytes a cell, 80 bytes a side.
+/// bounces). Cost of an order: one visit of each cell per octant, in (x+y+z)/8 - 2 dispatches, a diagonal of
+/// blocks of 8^3 cells each;
+/// an invocation walks through a block with four directions of a band, and reads and writes 5 texels for every 8 cells.
+/// Memory: a plane of the grid across each axis, 16 bytes for four directions of a band; 4 bytes a cell; 16 bytes a
+/// side, and 16 more for every four directions of an octant and each band.
 class OrdinatesTransportGl : public TransportGl {
  public:
   /// Directions and rule by choose_ordinates. @throws Error(usage) as ordinate_set.
@@ -28,24 +31,27 @@ class OrdinatesTransportGl : public TransportGl {
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return false; }
   size_t bytes() const override;
+  /// What bytes() will be.
+  static size_t bytes_for(const Grid& grid, OrdinateChoice choice, std::uint32_t side_capacity);
+  /// Dispatches of an order's sweep.
+  int dispatches() const { return int(first_block_.size()) - 1; }
 
  private:
-  void list_diagonals();
+  void list_blocks();
   void prepare(const VoxelGridGl& voxels, const gl::Buffer& sent);
-  void sweep(const gl::Program& program, int first_octant, int octants);
-  std::vector<std::string> defines(bool radiance) const;
+  void sweep();
   gl::Buffer pack_shares(const OrdinateSet& set) const;
 
   Grid grid_{};
-  Ordinates rule_;
-  int texels_;  // of one cell and octant: powers by direction and band, four a texel
+  OrdinateChoice choice_;
+  int lanes_;  // invocations of one block and octant: three bands of as many quads of directions
   gl::Program prepare_, sweep_, collect_;
-  std::optional<gl::Program> read_out_;  // compiled when asked for
+  std::unique_ptr<SweepRadianceGl> read_out_;  // made when asked for
   gl::Buffer shares_;
-  gl::Texture planes_[2];                         // columns x octants, texels and (characteristic) faces
+  gl::Texture faces_[3];                          // by axis: what leaves cells through downwind faces
   gl::Texture cell_word_, side_light_, arrived_;  // prepare_sweep.comp.glsl, sweep.comp.glsl
-  gl::Texture column_map_;
-  std::vector<int> first_cell_;  // of each diagonal in column_map_, and their end
+  gl::Texture block_list_;
+  std::vector<int> first_block_;  // of each diagonal in block_list_, and their end
   std::uint32_t capacity_ = 0;
 };
 

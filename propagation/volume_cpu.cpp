@@ -9,6 +9,8 @@
 #include "core/visibility/light_flux.h"
 #include "propagation/ordinates.h"
 #include "propagation/side_gather.h"
+#include "propagation/transport_conservative_cpu.h"
+#include "propagation/transport_ordinates_cpu.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -29,6 +31,22 @@ int light_texels(const Grid& grid) {
 
 constexpr int kLeastCoarseGrid = 16;  // below, a coarse part has too few cells to say anything
 
+bool has_coarse_part(const SchemeOptions& scheme, const Grid& grid) {
+  return scheme.scheme == Scheme::conservative && scheme.coarse_start.value_or(true) &&
+         std::max({grid.cells.x, grid.cells.y, grid.cells.z}) >= kLeastCoarseGrid;
+}
+
+/// CellVolumes of so many leaves of 8^3 cells: a float and three vectors a cell. Nodes above leaves are not counted.
+size_t cell_volumes_bytes(size_t leaves) {
+  return leaves * (openvdb::FloatTree::LeafNodeType(openvdb::Coord(), 0.0f).memUsage() +
+                   3 * openvdb::Vec3STree::LeafNodeType(openvdb::Coord(), openvdb::Vec3s(0.0f)).memUsage());
+}
+size_t cell_volumes_bytes(const CellVolumes& cells) {
+  return cells.occupancy ? cell_volumes_bytes(cells.occupancy->tree().leafCount()) : 0;
+}
+
+size_t side_irradiance_bytes(size_t sides) { return 2 * sizeof(glm::vec4) * sides; }
+
 bool same_sides(const VoxelGrid& a, const VoxelGrid& b) {
   return a.side_count() == b.side_count() &&
          std::memcmp(a.sides().data(), b.sides().data(), a.side_count() * sizeof(shared::Side)) == 0;
@@ -44,29 +62,26 @@ Grid half_grid(const Grid& grid) {
 
 }  // namespace
 
-size_t expected_sides(const Scene& scene, const Grid& grid) {
-  double faces = 0.0;  // in units of h^2
-  for (const Mesh& mesh : scene.meshes) {
-    for (glm::uvec3 t : mesh.triangles) {
-      const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-      const glm::dvec3 n = glm::abs(glm::cross(b - a, c - a));
-      faces += 0.5 * (n.x + n.y + n.z);
-    }
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const ExpectedSides& expected) {
+  const SchemeOptions& scheme = options.scheme;
+  const size_t flux = 2 * sizeof(glm::vec4) * expected.sides;
+  size_t bytes =
+      voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(grid, expected.sides, expected.blocks) + flux;
+  if (options.source == VolumeOptions::Source::first_bounce)
+    bytes += size_t(options.virtual_lights) * sizeof(shared::VirtualLight);
+  if (!carries_sides(scheme.scheme)) {
+    return bytes + PulseVolume::bytes_for(grid, scheme, expected.blocks) + cell_volumes_bytes(expected.blocks);
   }
-  const double h = double(grid.cell_size_m);
-  // No face has more than two sides.
-  return size_t(std::min(2.0 * faces / (h * h), 6.0 * double(cell_count(grid)))) + 64;
-}
-
-size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const SchemeOptions& scheme) {
-  const size_t cells = cell_count(grid);
-  const size_t sides = expected_sides(scene, grid);
-  constexpr size_t kSideVectors = 12;  // flux, received, sent, irradiance and the solver's own: 16 bytes each
-  size_t bytes = sides * (sizeof(shared::Side) + 16 * kSideVectors) + 12 * cells;
-  const size_t coefficients = scheme.sh_order == 2 ? 9 : 4;
-  if (scheme.scheme == Scheme::conservative) bytes += 2 * cells * coefficients * 12;
-  if (!carries_sides(scheme.scheme)) bytes += 3 * cells * coefficients * 12 + 40 * cells;
-  return bytes;
+  bytes += Bounces::bytes_for(expected.sides) + side_irradiance_bytes(expected.sides);
+  if (scheme.scheme == Scheme::ordinates)
+    return bytes + OrdinatesTransport::bytes_for(grid, choose_ordinates(grid.cells, scheme), expected);
+  bytes += ConservativeTransport::bytes_for(grid, scheme.sh_order, expected);
+  if (!has_coarse_part(scheme, grid)) return bytes;
+  const Grid half = half_grid(grid);
+  const ExpectedSides coarse = expected_sides(scene, half);
+  return bytes + VoxelGrid::bytes_for(half, coarse.sides, coarse.blocks) +
+         ConservativeTransport::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
@@ -77,7 +92,8 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
       mipmaps_(voxelization_mipmaps(scene)) {
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
-  refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options.scheme), "CPU");
+  if (options.memory_limit)
+    refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)), "CPU");
   look_at_geometry();
 }
 
@@ -104,11 +120,12 @@ void VolumeCpu::run() {
   irradiate();
 }
 
+bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
+
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
-  const bool coarse = options_.scheme.scheme == Scheme::conservative && options_.scheme.coarse_start &&
-                      std::max({grid_.cells.x, grid_.cells.y, grid_.cells.z}) >= kLeastCoarseGrid;
+  const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);
@@ -208,8 +225,9 @@ size_t VolumeCpu::bytes() const {
   size_t sum = mipmaps_.bytes() + voxels_.bytes() + half_voxels_.bytes();
   sum += (flux_.emitted.size() + flux_.punctual.size()) * sizeof(glm::vec4);
   sum += virtual_lights_.lights.size() * sizeof(shared::VirtualLight);
-  if (bounces_) sum += bounces_->transport().bytes() + 4 * voxels_.side_count() * sizeof(glm::vec4);
-  if (pulse_) sum += pulse_->bytes();
+  if (bounces_) sum += bounces_->transport().bytes() + Bounces::bytes_for(voxels_.side_count());
+  sum += side_irradiance_bytes(irradiance_.indirect.size());
+  if (pulse_) sum += pulse_->bytes() + cell_volumes_bytes(cells_);
   return sum;
 }
 

@@ -9,6 +9,7 @@
 #include "propagation/pulse_volume.h"
 #include "propagation/volume_options.h"
 #include "voxel/cell_volumes.h"
+#include "voxel/expected_sides.h"
 
 namespace volgi {
 
@@ -46,6 +47,8 @@ class VolumeCpu {
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
   RadianceVolume radiance();
   bool emits() const { return emits_; }
+  /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
+  bool has_coarse_part() const;
   size_t bytes() const;
 
  private:
@@ -72,10 +75,9 @@ class VolumeCpu {
   bool moved_ = false;  // since the last voxelization
 };
 
-/// Sides that the scene's triangles will have on the grid, from their areas (each shows s = |n_x|+|n_y|+|n_z| times its
-/// area, twice); what hides behind another surface in a cell is counted too, so this is seldom too low.
-size_t expected_sides(const Scene& scene, const Grid& grid);
-/// Memory that a volume on the CPU is going to take [bytes], for what is said and refused before it is taken.
-size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const SchemeOptions& scheme);
+/// Memory that a volume on the CPU is going to take [bytes], VolumeCpu::bytes() after a run, for what is said and
+/// refused before it is taken: the sum of what its parts say of themselves.
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const ExpectedSides& expected);
 
 }  // namespace volgi

@@ -32,6 +32,12 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   return rules;
 }
 
+void refuse_on_gpu(const VolumeOptions& o) {
+  if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
+    throw Error(ExitCode::usage,
+                "conservative.coarse=1: the GPU has no coarse grid; leave it out, or use --backend cpu");
+}
+
 void refuse_above_limit(const VolumeOptions& o, size_t expected, const char* where) {
   if (!o.memory_limit || expected <= *o.memory_limit) return;
   throw Error(ExitCode::over_limit,

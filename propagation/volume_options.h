@@ -38,6 +38,9 @@ struct VolumeOptions {
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
 
+/// @throws Error(usage) for what only the CPU can do.
+void refuse_on_gpu(const VolumeOptions& options);
+
 /// @throws Error(over_limit) naming both figures when `expected` exceeds options.memory_limit. @param where  "CPU",
 /// "GPU".
 void refuse_above_limit(const VolumeOptions& options, size_t expected, const char* where);

@@ -38,10 +38,9 @@ void CellVolumesGl::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-size_t CellVolumesGl::bytes() const {
-  size_t sum = grid_block_.bytes() + (8 + 8 + 16) * cell_count(grid_);
-  for (const gl::Buffer& sums : sums_) sum += sums.bytes();
-  return sum;
+size_t CellVolumesGl::bytes_for(const Grid& grid) {
+  constexpr size_t kSums = std::tuple_size_v<decltype(sums_)> * sizeof(glm::uvec2);
+  return sizeof(Grid) + (8 + 8 + 16 + kSums) * cell_count(grid);
 }
 
 CellVolumesGl::Cells CellVolumesGl::download() const {

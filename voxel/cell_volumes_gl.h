@@ -31,7 +31,8 @@ class CellVolumesGl {
   const gl::Texture& albedo() const { return albedo_; }
   /// RGBA32F. Largest radiosity pi * L_e in the cell, per channel [W m^-2]; w is 0.
   const gl::Texture& emission() const { return emission_; }
-  size_t bytes() const;
+  size_t bytes() const { return bytes_for(grid_); }
+  static size_t bytes_for(const Grid& grid);
 
   /// By cell index, for tests, export and the crosscheck. Waits for the GPU.
   struct Cells {

@@ -265,23 +265,15 @@ size_t SlicedVoxelization::bytes() const {
   return sum;
 }
 
-size_t voxelization_bytes(const Grid& grid, const Scene& scene) {
-  double staircases = 0.0;  // m^2, of one face of each surface: s times its area
-  for (const Mesh& mesh : scene.meshes) {
-    for (glm::uvec3 t : mesh.triangles) {
-      const glm::vec3 p = mesh.positions[t.x];
-      const glm::vec3 twice_area = glm::cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p);
-      staircases += 0.5 * double(shared::staircase_factor(twice_area));
-    }
-  }
+std::uint32_t side_capacity_for(size_t sides) { return with_headroom(std::uint32_t(sides)); }
+
+size_t voxelization_bytes(const Grid& grid, const Scene& scene, const ExpectedSides& expected) {
   const bool alpha = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& m) { return m.alpha_mode != AlphaMode::opaque; });
   size_t sum = 8 * cell_count(grid) + sizeof(std::uint32_t) * (cell_count(grid) / kGroup + 1) + sizeof(Grid);
   for (int axis = 0; axis < 3; ++axis) sum += (alpha ? 6 : 5) * sizeof(std::uint32_t) * faces(grid, axis);
-  const double h = double(grid.cell_size_m);
-  const auto crossed = std::uint32_t(std::min(staircases / (h * h), 3.0 * double(cell_count(grid))));
-  const size_t sides = with_headroom(2 * crossed);
-  return sum + with_headroom(crossed) * kSurfaceBytes + sides * (sizeof(shared::Side) + sizeof(std::uint32_t));
+  sum += kSurfaceBytes * with_headroom(std::uint32_t(expected.faces));
+  return sum + size_t(side_capacity_for(expected.sides)) * (sizeof(shared::Side) + sizeof(std::uint32_t));
 }
 
 }  // namespace volgi

@@ -8,6 +8,7 @@
 #include "core/gl/readback.h"
 #include "core/gl/scan.h"
 #include "core/gl/scene_buffers.h"
+#include "voxel/expected_sides.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi {
@@ -92,10 +93,9 @@ class SlicedVoxelization {
   bool alpha_ = false;  // some material cuts or covers in part
 };
 
-/// GPU memory [bytes] that SlicedVoxelization will take, for limits that are checked before allocating. What the grid
-/// needs is exact. Faces and sides are those of the surfaces' staircases; what lies between the same two centres counts
-/// twice, what is thinner than a cell too little: on the scenes of data/ 20 % low to 23 % high at 32 cells, 9 % low to
-/// 11 % high at 64.
-size_t voxelization_bytes(const Grid& grid, const Scene& scene);
+/// Sides that a SlicedVoxelization makes room for where it counts so many.
+std::uint32_t side_capacity_for(size_t sides);
+/// GPU memory [bytes] that a SlicedVoxelization will take, for limits that are checked before allocating.
+size_t voxelization_bytes(const Grid& grid, const Scene& scene, const ExpectedSides& expected);
 
 }  // namespace volgi

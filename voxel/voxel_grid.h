@@ -59,6 +59,8 @@ class VoxelGrid {
   static std::int64_t pack(glm::uvec2 v) { return std::int64_t(std::uint64_t(v.x) | (std::uint64_t(v.y) << 32)); }
 
   size_t bytes() const;
+  /// What bytes() will be of so many sides in so many leaves.
+  static size_t bytes_for(const Grid& grid, size_t sides, size_t leaves);
 
  private:
   void point_to_cells();

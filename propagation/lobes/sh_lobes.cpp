@@ -50,7 +50,7 @@ const float* LobeVolume::dark() { return zero_leaf(); }
 
 /// A chunk more.
 void LobeVolume::add_slots() {
-  const size_t bytes = chunk_bytes();
+  const size_t bytes = chunk_bytes(chunk_leaves_, leaf_floats_);
   void* p = std::aligned_alloc(bytes % kHugePage == 0 ? kHugePage : 4096, bytes);
   if (p == nullptr) throw std::bad_alloc();
   if (bytes % kHugePage == 0) madvise(p, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost without
@@ -66,8 +66,8 @@ float* LobeVolume::slot(int index) const {
 }
 
 /// Whole huge pages, but for grids that do not fill one.
-size_t LobeVolume::chunk_bytes() const {
-  const size_t bytes = chunk_leaves_ * leaf_floats_ * sizeof(float);
+size_t LobeVolume::chunk_bytes(size_t chunk_leaves, size_t leaf_floats) {
+  const size_t bytes = chunk_leaves * leaf_floats * sizeof(float);
   return bytes < kHugePage ? bytes : (bytes + kHugePage - 1) / kHugePage * kHugePage;
 }
 
@@ -116,8 +116,15 @@ void LobeVolume::swap(LobeVolume& other) noexcept {
   rows_written_.swap(other.rows_written_);
 }
 
+size_t LobeVolume::bytes_for(const LeafNumbers& numbers, int coefficients, size_t leaves) {
+  const LobeVolume one(numbers, coefficients);
+  const size_t chunks = (leaves + one.chunk_leaves_ - 1) / one.chunk_leaves_;
+  return one.bytes() + chunks * (chunk_bytes(one.chunk_leaves_, one.leaf_floats_) +
+                                 one.chunk_leaves_ * (sizeof(std::uint64_t) + sizeof(int)));
+}
+
 size_t LobeVolume::bytes() const {
-  return chunks_.size() * chunk_bytes() + table_.size() * (sizeof(float*) + sizeof(int)) +
+  return chunks_.size() * chunk_bytes(chunk_leaves_, leaf_floats_) + table_.size() * (sizeof(float*) + sizeof(int)) +
          rows_written_.size() * (sizeof(std::uint64_t) + sizeof(int));
 }
 

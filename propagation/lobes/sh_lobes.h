@@ -52,6 +52,8 @@ class LobeVolume {
   void drop(std::span<const char> dropped);
   void swap(LobeVolume& other) noexcept;
   size_t bytes() const;
+  /// What bytes() will be where so many leaves hold light.
+  static size_t bytes_for(const LeafNumbers& numbers, int coefficients, size_t leaves);
 
  private:
   struct Free {
@@ -61,7 +63,7 @@ class LobeVolume {
   void add_slots();
   float* slot(int index) const;
   void release(int number);
-  size_t chunk_bytes() const;
+  static size_t chunk_bytes(size_t chunk_leaves, size_t leaf_floats);
 
   size_t leaf_floats_;
   size_t chunk_leaves_;

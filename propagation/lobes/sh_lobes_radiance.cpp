@@ -74,6 +74,11 @@ void LobeSum::clear() {
   for (std::vector<float>& sums : leaves_) sums = {};
 }
 
+size_t LobeSum::bytes_for(const LeafNumbers& numbers, int coefficients, size_t leaves) {
+  return leaves * size_t(coefficients * kLobeBands * kLobeLeafCells) * sizeof(float) +
+         size_t(numbers.count()) * sizeof(std::vector<float>);
+}
+
 size_t LobeSum::bytes() const {
   size_t floats = 0;
   for (const std::vector<float>& sums : leaves_) floats += sums.size();

@@ -18,6 +18,8 @@ class LobeSum {
   RadianceVolume radiance(const Grid& grid, float odd_sign = 1.0f) const;
   void clear();
   size_t bytes() const;
+  /// What bytes() will be where light is in so many leaves.
+  static size_t bytes_for(const LeafNumbers& numbers, int coefficients, size_t leaves);
 
  private:
   LeafNumbers numbers_;

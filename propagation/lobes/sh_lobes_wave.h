@@ -14,6 +14,10 @@ namespace volgi {
 /// Light in flight: two states of lobes, and which leaves take part in a pass. Leaves join as light arrives in them and
 /// drop out when they are dark; what passes do is up to the scheme.
 class LobeWave {
+  struct LitRows {
+    std::uint64_t any = 0, low = 0, high = 0;  // LeafLight
+  };
+
  public:
   LobeWave(const LeafNumbers& numbers, int coefficients)
       : numbers_(numbers), now_(numbers, coefficients), next_(numbers, coefficients), lit_(size_t(numbers.count())) {}
@@ -41,6 +45,11 @@ class LobeWave {
   /// All leaves take part, lit or not: what sparse storage is measured against.
   void set_dense(bool dense) { dense_ = dense; }
   bool dense() const { return dense_; }
+  /// What bytes() will be where light is everywhere.
+  static size_t bytes_for(const LeafNumbers& numbers, int coefficients) {
+    const auto all = size_t(numbers.count());
+    return 2 * LobeVolume::bytes_for(numbers, coefficients, all) + all * (sizeof(LeafLight) + sizeof(LitRows));
+  }
   size_t bytes() const {
     return now_.bytes() + next_.bytes() + light_.capacity() * sizeof(LeafLight) + lit_.size() * sizeof(LitRows);
   }
@@ -53,10 +62,6 @@ class LobeWave {
 
   LeafNumbers numbers_;
   LobeVolume now_, next_;
-  struct LitRows {
-    std::uint64_t any = 0, low = 0, high = 0;  // LeafLight
-  };
-
   std::vector<LeafLight> light_;  // of now_.leaves()
   std::vector<LitRows> lit_;      // by number of leaf, of now_
   glm::dvec3 in_flight_{0.0};

@@ -9,12 +9,20 @@ layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 6) buffer Received { vec4 received[]; };
 layout(binding = 0) uniform sampler2D arrived;
+uniform int lanes;  // of an octant: three bands of as many quads of directions
+
+float power_of_band(int side, int band) {
+  int quads = lanes / 3;
+  float sum = 0.0;
+  for (int entry = 0; entry < 4; ++entry) {
+    for (int quad = 0; quad < quads; ++quad)
+      sum += texelFetch(arrived, arrived_texel(side, entry, band * quads + quad, lanes), 0).r;
+  }
+  return sum;
+}
 
 void main() {
   int i = int(global_index());
   if (i >= int(side_count)) return;
-  ivec2 t = side_texel(i) * ivec2(4, 1);
-  vec3 sum = (texelFetch(arrived, t, 0).rgb + texelFetch(arrived, t + ivec2(1, 0), 0).rgb) +
-             (texelFetch(arrived, t + ivec2(2, 0), 0).rgb + texelFetch(arrived, t + ivec2(3, 0), 0).rgb);
-  received[i].rgb += sides[i].coverage * sum;
+  received[i].rgb += sides[i].coverage * vec3(power_of_band(i, 0), power_of_band(i, 1), power_of_band(i, 2));
 }

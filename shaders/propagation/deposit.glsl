@@ -1,10 +1,8 @@
 // Light that leaves a surface at a point goes to the sides that stand for that surface, in fixed point, so that sums do
-// not depend on order.
+// not depend on order: 64 bits, for a texel of a narrow spot's large map may bring 1e-13 of what the light could send.
 #include "voxel/find_side.glsl"
 
-layout(std430, binding = 12) buffer FluxFixed { uint flux_fixed[]; };  // 3 per side
-layout(std430, binding = 13) buffer FluxLost { uint flux_lost[3]; };   // what found no side
-uniform float flux_unit;  // [W]; all light of one source is at most 2^30 of them
+#include "propagation/fixed_flux.glsl"
 
 // The side of the 5^3 cells around that is nearest and faces most alike; those that face the surface's way, of cells that
 // reach in front of it, before all others. None where the surface is the grid's rim and looks out.
@@ -35,14 +33,21 @@ int find_any_side(vec3 point, vec3 normal) {
   return best;
 }
 
-void add_flux(int side, vec3 flux) {
-  uvec3 units = uvec3(flux / flux_unit + 0.5);
-  if (side < 0) {
-    for (int band = 0; band < 3; ++band) atomicAdd(flux_lost[band], units[band]);
-    return;
+// 64-bit sums by 32-bit atomics: a low word that wraps carries one. Every addition sees the low word that it met, so
+// that all wraps are counted, in any order of threads.
+#define ADD_FIXED(sum, units)                                         \
+  {                                                                   \
+    uint low_before = atomicAdd(sum.x, units.x);                      \
+    uint carried = units.y + (low_before > ~units.x ? 1u : 0u);       \
+    if (carried != 0u) atomicAdd(sum.y, carried);                     \
   }
+
+void add_flux(int side, vec3 flux) {
   for (int band = 0; band < 3; ++band) {
-    if (units[band] != 0u) atomicAdd(flux_fixed[3 * side + band], units[band]);
+    if (flux[band] <= 0.0) continue;
+    uvec2 units = fixed_from_share(flux[band] / source_power);
+    if (side < 0) ADD_FIXED(flux_lost[band], units)
+    else ADD_FIXED(flux_fixed[3 * side + band], units)
   }
 }
 

@@ -1,214 +1,140 @@
 #version 450 core
 // One transport order of the `ordinates` scheme: discrete ordinates (docs/theory.md#ordinates). The flow of the directions
 // of one octant is ordered, so one sweep over the cells, upwind cells first, solves void, blocked and partly transmitting
-// faces to rounding. A dispatch takes one diagonal i+j+k of all eight octants: its cells do not depend on each other, and
-// only the diagonal before is kept. With RADIANCE the octants follow one another and each adds to the cells' radiance.
+// faces to rounding.
 //
-// Powers are packed: value 3 d + band of the octant's direction d, four values a texel, so texel k begins with band k % 3.
-// Step keeps a cell's power of each direction; characteristic (SC1) what leaves through each of its three downwind faces.
-// Set by the program: TEXELS = 3
+// A work group takes a block of 8^3 cells of all octants, a dispatch one diagonal of blocks: these do not depend on each
+// other. An invocation has one band of four directions of an octant and walks through the block's cells, so that no two
+// invocations wait for each other. It takes tiles of 4 x 4 cells along z; what passes between the cells of a tile stays in
+// registers, what passes between tiles lies in one plane of the grid an axis, read and written in place.
+// Set by the program: QUADS = 4
 // Set by the program: CHARACTERISTIC = 1
-// Set by the program: RADIANCE = 0
 #include "shared/grid.shared.h"
 #include "propagation/side_texel.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 3 * QUADS, local_size_y = 8) in;  // lane: band and four directions; octant
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-// By texel; a is an upwind, b a downwind face's axis.
-layout(std140, binding = 1) uniform SharesBlock {
-  vec4 emitted_share[3 * TEXELS];  // of what a side on face a sends (OrdinateSet::emitted_share): 3 k + a
-  // Step: of a cell's power through face b: 3 k + b. Characteristic: of what came in through face a: 9 k + 3 a + b.
-  vec4 downwind_share[(CHARACTERISTIC != 0 ? 9 : 3) * TEXELS];
-  vec4 radiance_weight[3 * TEXELS];  // radiance_per_watt of what comes in through face a: 3 k + a
-  vec4 direction[3 * TEXELS];        // its component on axis a: 3 k + a
+// Of four directions; a is an upwind, b a downwind face's axis.
+struct QuadShares {
+  vec4 emitted[3];  // of what a side on face a sends (OrdinateSet::emitted_share)
+  vec4 downwind[CHARACTERISTIC != 0 ? 9 : 3];  // step: of a cell's power through face b; SC1: of what comes in by a through b, 3 a + b
 };
-layout(binding = 0) uniform sampler2DArray before_plane;  // column (i,j); layers by octant, texel, downwind face
-layout(binding = 1) uniform usampler3D cell_word;         // (first side << 6) | faces (prepare_sweep)
-layout(binding = 2) uniform sampler2D side_light;         // rgb sent [W], a: 1 - tau
-layout(binding = 3) uniform usampler2D column_map;        // of all diagonals' cells: i + (j << 16)
-layout(binding = 0, rgba32f) uniform restrict writeonly image2DArray this_plane;
-#if RADIANCE
-layout(binding = 1, rgba32f) uniform restrict image3D radiance_sh;  // four coefficients stacked in z
-#else
-// Four entries a side, one for each octant that can reach it; the entry's number is the octant's on the two other axes.
-layout(binding = 1, rgba32f) uniform restrict writeonly image2D arrived;
-#endif
-uniform int diagonal;
-uniform int first_cell;  // of the diagonal, in column_map
-uniform int cell_count;
-uniform int first_octant;
+layout(std430, binding = 9) readonly buffer Shares { QuadShares shares[QUADS]; };
+layout(binding = 1) uniform usampler3D cell_word;   // (first side << 6) | faces (prepare_sweep)
+layout(binding = 2) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
+layout(binding = 3) uniform usampler2D block_list;  // of all diagonals: x | y << 8 | z << 16
+// What leaves cells through their downwind faces [W], by octant and lane, then by the face's place: (y,z), (x,z), (x,y).
+layout(binding = 0, rgba32f) uniform restrict image3D x_faces;
+layout(binding = 1, rgba32f) uniform restrict image3D y_faces;
+layout(binding = 2, rgba32f) uniform restrict image3D z_faces;
+layout(binding = 3, r32f) uniform restrict writeonly image2D arrived;  // side_texel.glsl
+uniform int first_block;                                               // of the diagonal, in block_list
 
-const int FACES = CHARACTERISTIC != 0 ? 3 : 1;
+const int BLOCK = 8;
+const int TILE = 4;
 
-struct Light {
-  bool at_sides;  // the cell has sides: the next two count
-  vec3 sent[3];   // by the sides on the upwind faces [W]
-  vec3 leaves[3];  // through the downwind faces [W]
-  vec3 pass;      // share that comes through each upwind face
-  vec3 sh[4];     // RADIANCE: of the octant's light, in the octant's own axes
-};
+// The invocation's own.
+int lane = int(gl_LocalInvocationID.x), octant = int(gl_LocalInvocationID.y);
+int band = lane / QUADS;
+QuadShares own = shares[lane % QUADS];
+// Flow coordinates grow along the octant's flow: cell = cell_of_flow_0 + cell_step * flow.
+ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
+ivec3 cell_of_flow_0 = (1 - positive) * (grid.cells - 1), cell_step = 2 * positive - 1;
+uint upwind_faces = (2u >> positive.x) | (8u >> positive.y) | (32u >> positive.z);  // 2 a where flow is positive, 2 a + 1
 
-struct From {  // columns that light comes from
-  ivec2 x, y, z;
-  int layer;
-};
-
-vec4 packed_bands(vec3 rgb, int first) { return first == 0 ? rgb.rgbr : first == 1 ? rgb.gbrg : rgb.brgb; }
-vec3 summed_bands(vec4 t, int first) {
-  vec3 sum = vec3(t.x + t.w, t.yz);
-  return first == 0 ? sum.xyz : first == 1 ? sum.zxy : sum.yzx;
-}
-
-int entry_of_octant(int octant, int axis) {
-  return axis == 0 ? octant >> 1 : axis == 1 ? (octant & 1) | ((octant >> 1) & 2) : octant & 3;
-}
 int side_of(uint word, int face) { return int(word >> 6) + bitCount(word & ((1u << face) - 1u)); }
-bool word_has_side(uint word, int face) { return ((word >> face) & 1u) != 0u; }
 
-// The upwind face of `axis`: what a side there sends, and what it lets through.
-void enter(uint word, int axis, int face, inout Light light) {
-  vec4 side = texelFetch(side_light, side_texel(side_of(word, face)), 0);
-  light.sent[axis] = word_has_side(word, face) ? side.rgb : vec3(0.0);
-  if (word_has_side(word, face)) light.pass[axis] *= side.a;
+// Sides on upwind faces: what they send, and what they let through.
+void enter(uint word, inout vec4 x, inout vec4 y, inout vec4 z) {
+  for (uint rest = word & upwind_faces; rest != 0u; rest &= rest - 1u) {
+    int face = findLSB(rest);
+    vec4 side = texelFetch(side_light, side_texel(side_of(word, face)), 0);
+    float sent = side[band];
+    if (face < 2) x = side.a * x + sent * own.emitted[0];
+    else if (face < 4) y = side.a * y + sent * own.emitted[1];
+    else z = side.a * z + sent * own.emitted[2];
+  }
 }
 
-void add_radiance(int k, int band, vec4 in_x, vec4 in_y, vec4 in_z, inout Light light) {
-  vec4 q = radiance_weight[3 * k] * in_x + radiance_weight[3 * k + 1] * in_y + radiance_weight[3 * k + 2] * in_z;
-  light.sh[0] += summed_bands(q, band);
-  light.sh[1] += summed_bands(q * direction[3 * k + 1], band);
-  light.sh[2] += summed_bands(q * direction[3 * k + 2], band);
-  light.sh[3] += summed_bands(q * direction[3 * k], band);
+// What reaches sides on downwind faces; the sides' share is taken in collect_octants.
+void leave(uint word, vec4 x, vec4 y, vec4 z) {
+  for (uint rest = word & 63u & ~upwind_faces; rest != 0u; rest &= rest - 1u) {
+    int face = findLSB(rest);
+    int axis = face >> 1;
+    vec4 power = axis == 0 ? x : axis == 1 ? y : z;
+    float sum = (power.x + power.y) + (power.z + power.w);
+    imageStore(arrived, arrived_texel(side_of(word, face), entry_of_octant(octant, axis), lane, 3 * QUADS), vec4(sum));
+  }
 }
 
-// Texel k of the cell, which begins with `band`. Indices are literal wherever this is called: a driver may gather a
-// uniform by computed index lane by lane (llvmpipe: 2.5 times the whole sweep's time).
-void carry_texel(int k, int band, From from, inout Light light) {
-  int layer = from.layer + k * FACES;
+// From what comes in through a cell's upwind faces to what goes on through its downwind faces.
+void carry_cell(ivec3 flow, inout vec4 x, inout vec4 y, inout vec4 z) {
+  uint word = texelFetch(cell_word, cell_of_flow_0 + cell_step * flow, 0).x;
+  if (any(greaterThanEqual(flow, grid.cells))) word = 0u;
+  enter(word, x, y, z);
 #if CHARACTERISTIC
-  vec4 in_x = light.pass.x * texelFetch(before_plane, ivec3(from.x, layer), 0);
-  vec4 in_y = light.pass.y * texelFetch(before_plane, ivec3(from.y, layer + 1), 0);
-  vec4 in_z = light.pass.z * texelFetch(before_plane, ivec3(from.z, layer + 2), 0);
+  vec4 out_x = own.downwind[0] * x + own.downwind[3] * y + own.downwind[6] * z;
+  vec4 out_y = own.downwind[1] * x + own.downwind[4] * y + own.downwind[7] * z;
+  vec4 out_z = own.downwind[2] * x + own.downwind[5] * y + own.downwind[8] * z;
 #else
-  vec4 in_x = light.pass.x * downwind_share[3 * k] * texelFetch(before_plane, ivec3(from.x, layer), 0);
-  vec4 in_y = light.pass.y * downwind_share[3 * k + 1] * texelFetch(before_plane, ivec3(from.y, layer), 0);
-  vec4 in_z = light.pass.z * downwind_share[3 * k + 2] * texelFetch(before_plane, ivec3(from.z, layer), 0);
+  vec4 power = x + y + z;
+  vec4 out_x = own.downwind[0] * power;
+  vec4 out_y = own.downwind[1] * power;
+  vec4 out_z = own.downwind[2] * power;
 #endif
-  if (light.at_sides) {
-    in_x += emitted_share[3 * k] * packed_bands(light.sent[0], band);
-    in_y += emitted_share[3 * k + 1] * packed_bands(light.sent[1], band);
-    in_z += emitted_share[3 * k + 2] * packed_bands(light.sent[2], band);
-  }
-#if RADIANCE
-  add_radiance(k, band, in_x, in_y, in_z, light);
-#endif
-#if CHARACTERISTIC
-  vec4 out_x = downwind_share[9 * k] * in_x + downwind_share[9 * k + 3] * in_y + downwind_share[9 * k + 6] * in_z;
-  vec4 out_y = downwind_share[9 * k + 1] * in_x + downwind_share[9 * k + 4] * in_y + downwind_share[9 * k + 7] * in_z;
-  vec4 out_z = downwind_share[9 * k + 2] * in_x + downwind_share[9 * k + 5] * in_y + downwind_share[9 * k + 8] * in_z;
-  imageStore(this_plane, ivec3(from.z, layer), out_x);
-  imageStore(this_plane, ivec3(from.z, layer + 1), out_y);
-  imageStore(this_plane, ivec3(from.z, layer + 2), out_z);
-#else
-  vec4 power = in_x + in_y + in_z;
-  imageStore(this_plane, ivec3(from.z, layer), power);
-  vec4 out_x = downwind_share[3 * k] * power;
-  vec4 out_y = downwind_share[3 * k + 1] * power;
-  vec4 out_z = downwind_share[3 * k + 2] * power;
-#endif
-  if (light.at_sides) {
-    light.leaves[0] += summed_bands(out_x, band);
-    light.leaves[1] += summed_bands(out_y, band);
-    light.leaves[2] += summed_bands(out_z, band);
-  }
+  leave(word, out_x, out_y, out_z);
+  x = out_x;
+  y = out_y;
+  z = out_z;
 }
 
-void carry_texels(From from, inout Light light) {
-#if TEXELS > 0
-  carry_texel(0, 0, from, light);
-#endif
-#if TEXELS > 1
-  carry_texel(1, 1, from, light);
-#endif
-#if TEXELS > 2
-  carry_texel(2, 2, from, light);
-#endif
-#if TEXELS > 3
-  carry_texel(3, 0, from, light);
-#endif
-#if TEXELS > 4
-  carry_texel(4, 1, from, light);
-#endif
-#if TEXELS > 5
-  carry_texel(5, 2, from, light);
-#endif
-#if TEXELS > 6
-  carry_texel(6, 0, from, light);
-#endif
-#if TEXELS > 7
-  carry_texel(7, 1, from, light);
-#endif
-#if TEXELS > 8
-  carry_texel(8, 2, from, light);
-#endif
-#if TEXELS > 9
-  carry_texel(9, 0, from, light);
-#endif
-#if TEXELS > 10
-  carry_texel(10, 1, from, light);
-#endif
-#if TEXELS > 11
-  carry_texel(11, 2, from, light);
-#endif
+// Place of a face in its plane; nothing comes from outside the grid.
+ivec3 in_plane(int u, int v) { return ivec3(octant * 3 * QUADS + lane, u, v); }
+vec4 come_in(restrict image3D faces, int u, int v, bool inside) {
+  vec4 power = imageLoad(faces, in_plane(u, v));
+  return inside ? power : vec4(0.0);
 }
 
-#if RADIANCE
-// Real, orthonormal, order 00, 1-1 (y), 10 (z), 11 (x).
-void store_radiance(ivec3 cell, vec3 octant_sign, Light light) {
-  vec4 y = vec4(0.28209479, 0.48860251 * octant_sign.yzx);
-  for (int i = 0; i < 4; ++i) {
-    ivec3 texel = cell + ivec3(0, 0, i * grid.cells.z);
-    imageStore(radiance_sh, texel, imageLoad(radiance_sh, texel) + vec4(y[i] * light.sh[i], 0.0));
+// Four cells along x. Indices are literal wherever registers are meant.
+void carry_row(ivec3 first, inout vec4 y[TILE], inout vec4 z[TILE * TILE]) {
+  vec4 x = come_in(x_faces, first.y, first.z, first.x > 0);
+  carry_cell(first, x, y[0], z[0]);
+  carry_cell(first + ivec3(1, 0, 0), x, y[1], z[1]);
+  carry_cell(first + ivec3(2, 0, 0), x, y[2], z[2]);
+  carry_cell(first + ivec3(3, 0, 0), x, y[3], z[3]);
+  imageStore(x_faces, in_plane(first.y, first.z), x);
+}
+
+// The next row's four become the first.
+void turn_rows(inout vec4 z[TILE * TILE]) {
+  vec4 done[TILE];
+  for (int i = 0; i < TILE; ++i) done[i] = z[i];
+  for (int i = 0; i < TILE * (TILE - 1); ++i) z[i] = z[i + TILE];
+  for (int i = 0; i < TILE; ++i) z[TILE * (TILE - 1) + i] = done[i];
+}
+
+void carry_tile(ivec3 first, int end_z) {
+  vec4 through_y[TILE], through_z[TILE * TILE];  // what comes into the next cells [W]
+  for (int i = 0; i < TILE * TILE; ++i)
+    through_z[i] = come_in(z_faces, first.x + i % TILE, first.y + i / TILE, first.z > 0);
+  for (int z = first.z; z < end_z; ++z) {
+    for (int x = 0; x < TILE; ++x) through_y[x] = come_in(y_faces, first.x + x, z, first.y > 0);
+    for (int y = 0; y < TILE; ++y) {
+      carry_row(ivec3(first.x, first.y + y, z), through_y, through_z);
+      turn_rows(through_z);
+    }
+    for (int x = 0; x < TILE; ++x) imageStore(y_faces, in_plane(first.x + x, z), through_y[x]);
   }
+  for (int i = 0; i < TILE * TILE; ++i)
+    imageStore(z_faces, in_plane(first.x + i % TILE, first.y + i / TILE), through_z[i]);
 }
-#else
-// What reaches the downwind face of `axis`, where it has a side; the side's share is taken in collect_octants.
-void leave(uint word, int axis, int face, int octant, vec3 power) {
-  if (!word_has_side(word, face)) return;
-  ivec2 texel = side_texel(side_of(word, face)) * ivec2(4, 1) + ivec2(entry_of_octant(octant, axis), 0);
-  imageStore(arrived, texel, vec4(power, 0.0));
-}
-#endif
 
 void main() {
-  int n = int(gl_GlobalInvocationID.x);
-  if (n >= cell_count) return;
-  n += first_cell;
-  int column = int(texelFetch(column_map, ivec2(n & 1023, n >> 10), 0).x);
-  ivec3 flow = ivec3(column & 0xffff, column >> 16, 0);
-  flow.z = diagonal - flow.x - flow.y;
-  int octant = first_octant + int(gl_WorkGroupID.y);
-  ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
-  ivec3 cell = positive * flow + (1 - positive) * (grid.cells - 1 - flow);
-  uint word = texelFetch(cell_word, cell, 0).x;
-
-  Light light;
-  light.at_sides = (word & 63u) != 0u;
-  light.pass = vec3(greaterThan(flow, ivec3(0)));
-  for (int axis = 0; axis < 3; ++axis) light.leaves[axis] = light.sent[axis] = vec3(0.0);
-  for (int i = 0; i < 4; ++i) light.sh[i] = vec3(0.0);
-  if (light.at_sides) {
-    enter(word, 0, 1 - positive.x, light);
-    enter(word, 1, 3 - positive.y, light);
-    enter(word, 2, 5 - positive.z, light);
+  int n = first_block + int(gl_WorkGroupID.x);
+  uint block = texelFetch(block_list, ivec2(n & 1023, n >> 10), 0).x;
+  ivec3 first = BLOCK * ivec3(block & 255u, (block >> 8) & 255u, block >> 16);
+  ivec3 end = min(first + BLOCK, grid.cells);
+  for (int y = first.y; y < end.y; y += TILE) {
+    for (int x = first.x; x < end.x; x += TILE) carry_tile(ivec3(x, y, first.z), end.z);
   }
-  From from = From(ivec2(max(flow.x - 1, 0), flow.y), ivec2(flow.x, max(flow.y - 1, 0)), flow.xy, octant * TEXELS * FACES);
-  carry_texels(from, light);
-#if RADIANCE
-  store_radiance(cell, vec3(2 * positive - 1), light);
-#else
-  if (!light.at_sides) return;
-  leave(word, 0, positive.x, octant, light.leaves[0]);
-  leave(word, 1, 2 + positive.y, octant, light.leaves[1]);
-  leave(word, 2, 4 + positive.z, octant, light.leaves[2]);
-#endif
 }

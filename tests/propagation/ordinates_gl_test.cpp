@@ -160,6 +160,14 @@ INSTANTIATE_TEST_SUITE_P(Sets, OrdinatesGl,
                            return (step ? "Step" : "Characteristic") + std::to_string(test.param.directions);
                          });
 
+// A dispatch and a barrier cost a GPU more than a diagonal of cells does.
+using OrdinatesGlDispatches = GlTest;
+TEST_F(OrdinatesGlDispatches, AreAtMostHalfTheCellsOfAnEdge) {
+  for (const int n : {8, 12, 16, 32, 33, 128}) {
+    EXPECT_LE(OrdinatesTransportGl(unit_grid(n), 8).dispatches(), std::max(n / 2, 4)) << n;
+  }
+}
+
 // What goes with the grid (choose_ordinates), or what is asked for.
 TEST(OrdinatesGlOptions, AreChosen) {
   SchemeOptions options;

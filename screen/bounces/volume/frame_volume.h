@@ -13,6 +13,7 @@ namespace volgi::screen {
 /// What the volume did, for --stats.
 struct VolumeReport {
   bool on_gpu = false;
+  bool coarse_start = false;  // SchemeOptions::coarse_start, as it was
   glm::ivec3 grid{0};
   size_t sides = 0;
   BounceReport bounces;
@@ -39,12 +40,17 @@ class FrameVolume {
   virtual VolumeReport report() const = 0;
 };
 
-/// Memory that a volume is going to take [bytes], from the grid and the scene's area, before anything is allocated:
-/// what options.memory_limit is held against.
-size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu);
+/// Memory that a volume is going to take [bytes] for pictures of a size, VolumeReport::memory_bytes, before anything is
+/// allocated: what options.memory_limit is held against. The sum of what its parts say of themselves.
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu, glm::ivec2 size);
+
+/// The same of either backend.
+size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
+size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 
 /// @param scene  must outlive the volume.
-/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit.
+/// @throws Error as Frame; Error(over_limit) naming both figures above options.memory_limit; on the GPU as
+///   refuse_on_gpu.
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size);
 

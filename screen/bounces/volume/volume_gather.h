@@ -20,7 +20,8 @@ class VolumeGather {
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
-  size_t bytes() const { return size_t(direct_.size().x) * size_t(direct_.size().y) * 32; }
+  size_t bytes() const { return bytes_for(direct_.size()); }
+  static size_t bytes_for(glm::ivec2 size) { return size_t(size.x) * size_t(size.y) * 2 * sizeof(glm::vec4); }
 
  private:
   gl::Texture direct_, indirect_;

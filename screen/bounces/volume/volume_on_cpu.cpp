@@ -21,6 +21,8 @@ void run_stages(VolumeCpu& volume, gl::PassTimer& timer) {
   stage("propagation/side_irradiance_cpu", &VolumeCpu::irradiate);
 }
 
+size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
+
 /// FrameVolume::follow_scene.
 bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume) {
   if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells), volume.grid())) return false;
@@ -32,6 +34,7 @@ VolumeReport report_of(const VolumeCpu& volume) {
   VolumeReport r;
   r.grid = volume.grid().cells;
   r.sides = volume.voxels().side_count();
+  r.coarse_start = volume.has_coarse_part();
   r.bounces = volume.report();
   r.lost = volume.flux().lost;
   for (const auto* flux : {&volume.flux().emitted, &volume.flux().punctual}) {
@@ -70,7 +73,7 @@ class SidesOnCpu : public FrameVolume {
  private:
   static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
     const size_t bytes = values.size() * sizeof(glm::vec4);
-    if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(bytes + bytes / 5);
+    if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(with_headroom(bytes));
     if (bytes > 0) buffer.upload(values.data(), bytes);
   }
 
@@ -81,6 +84,8 @@ class SidesOnCpu : public FrameVolume {
   gl::Buffer direct_, indirect_;
   VolumeGather gather_;
 };
+
+constexpr size_t kNormalBytes = sizeof(glm::vec4);  // of a cell, on the GPU
 
 /// A volume of values by cell as a texture of `layers` volumes stacked in z.
 void upload_cells(const openvdb::Vec3SGrid& from, const openvdb::FloatGrid* fourth, const Grid& grid, int layer,
@@ -129,7 +134,8 @@ class PulseOnCpu : public FrameVolume {
 
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);
-    r.memory_bytes = volume_.bytes() + voxels_.bytes() + radiance_.bytes() + gather_.bytes();
+    r.memory_bytes = volume_.bytes() + voxels_.bytes() + radiance_.bytes() + kNormalBytes * cell_count(volume_.grid()) +
+                     gather_.bytes();
     return r;
   }
 
@@ -145,7 +151,20 @@ class PulseOnCpu : public FrameVolume {
 
 }  // namespace
 
+size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const ExpectedSides expected = expected_sides(scene, grid);
+  const size_t uploaded = sizeof(Grid) + 8 * cell_count(grid) + sizeof(shared::Side) * expected.sides;
+  const size_t bytes = bytes_expected_cpu(scene, grid, options, expected) + uploaded;
+  if (carries_sides(options.scheme.scheme))
+    return bytes + 2 * with_headroom(sizeof(glm::vec4) * expected.sides) + VolumeGather::bytes_for(size);
+  const int coefficients = options.scheme.sh_order == 2 ? 9 : 4;
+  return bytes + RadianceVolumeGl::bytes_for(grid, coefficients) + kNormalBytes * cell_count(grid) +
+         RadianceGather::bytes_for(size);
+}
+
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  if (options.memory_limit) refuse_above_limit(options, volume_bytes_on_cpu(scene, options, size), "CPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnCpu>(scene, options, size);
   return std::make_unique<PulseOnCpu>(scene, options, size);
 }

@@ -165,16 +165,36 @@ class PulseOnGpu : public FrameVolume {
   BounceReport bounce_report_;
 };
 
+size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const SchemeOptions& scheme = options.scheme;
+  const ExpectedSides expected = expected_sides(scene, grid);
+  const std::uint32_t capacity = side_capacity_for(expected.sides);
+  const bool lit = options.source == VolumeOptions::Source::lights;
+  const size_t bytes = voxelization_bytes(grid, scene, expected) +
+                       SideFluxGl::bytes_for(capacity, lit ? emitter_pieces(scene, grid).size() : 0);
+  if (!carries_sides(scheme.scheme)) {
+    return bytes + CellVolumesGl::bytes_for(grid) + PulseVolumeGl::bytes_for(grid, scheme.sh_order) +
+           RadianceGather::bytes_for(size);
+  }
+  const bool linear = scheme.scheme == Scheme::ordinates;
+  const size_t transport = linear
+                               ? OrdinatesTransportGl::bytes_for(grid, choose_ordinates(grid.cells, scheme), capacity)
+                               : ConservativeTransportGl::bytes_for(grid, scheme.sh_order);
+  const BounceRules rules = bounce_rules(options, largest_albedo(scene));
+  return bytes + transport + BouncesGl::bytes_for(capacity, rules, linear) + SideIrradianceGl::bytes_for(capacity) +
+         VolumeGather::bytes_for(size);
+}
+
 }  // namespace
 
-size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu) {
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
-  const size_t of_twin = bytes_expected_cpu(scene, grid, options.scheme);
-  return on_gpu ? of_twin + voxelization_bytes(grid, scene) : of_twin;
+size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu, glm::ivec2 size) {
+  return on_gpu ? volume_bytes_on_gpu(scene, options, size) : volume_bytes_on_cpu(scene, options, size);
 }
 
 std::unique_ptr<FrameVolume> make_volume_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
-  refuse_above_limit(options, volume_bytes_expected(scene, options, true), "GPU");
+  refuse_on_gpu(options);
+  if (options.memory_limit) refuse_above_limit(options, volume_bytes_on_gpu(scene, options, size), "GPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnGpu>(scene, options, size);
   return std::make_unique<PulseOnGpu>(scene, options, size);
 }

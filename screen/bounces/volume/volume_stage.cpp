@@ -43,7 +43,9 @@ constexpr Parameter PARAMETERS[] = {
         {"solver.passes", "passes", "amortised: at most so many over the volume a frame", "until done"}, {1, 10000},
         [](VolumeOptions& o) -> auto& { return o.passes_a_run; }),
     yes_no<VolumeOptions>(
-        {"conservative.coarse", "", "conservative: carries the tail on a grid of half the edge"},
+        {"conservative.coarse", "",
+         "conservative: carries the end of each order on a grid of half as many cells, on the CPU only",
+         "on there, off on the GPU"},
         [](VolumeOptions& o) -> auto& { return o.scheme.coarse_start; }),
     yes_no<VolumeOptions>(
         {"gaitatzes.half_albedo", "", "gaitatzes2010: takes 0.5 for every albedo after the first bounce"},
@@ -91,6 +93,7 @@ void add_figures(const VolumeReport& v, FrameReport& report) {
   report.add("orders", double(v.bounces.orders), words(fmt::format("{} orders", v.bounces.orders)));
   report.add("iterations", double(v.bounces.passes), words(fmt::format("{} passes over the volume", v.bounces.passes)));
   report.add("converged", v.bounces.converged);
+  report.add("conservative_coarse", v.coarse_start);
   report.add("backend", std::string(v.on_gpu ? "gpu" : "cpu"),
              words(std::string("volume on the ") + (v.on_gpu ? "GPU" : "CPU")));
   report.add("power_W.injected", rgb(v.injected));
@@ -143,7 +146,7 @@ class VolumeStage : public Stage {
   }
   std::string announcement() const override {
     return fmt::format("volume: on the {}, about {:.1f} MiB", on_gpu_ ? "GPU" : "CPU",
-                       double(volume_bytes_expected(scene_, options_, on_gpu_)) / 1048576.0);
+                       double(volume_bytes_expected(scene_, options_, on_gpu_, size_)) / 1048576.0);
   }
 
  private:

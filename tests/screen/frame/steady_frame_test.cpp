@@ -9,7 +9,7 @@ namespace {
 
 struct Setting {
   const char* name;
-  screen::GiMode gi;
+  Gi gi;
   screen::Backend backend = screen::Backend::gpu;
 };
 
@@ -24,15 +24,15 @@ TEST_P(SteadyFrame, MakesNoObjects) {
                   point_light({-1.0f, 1.8f, 0.5f}, 5.0f), sun_light({0.2f, -1.0f, -0.3f}, 1.0f)};
   update_bounds(scene);
   screen::FrameOptions options;
-  options.gi = GetParam().gi;
+  options.recipe = GetParam().gi;
   options.backend = GetParam().backend;
   options.size = glm::ivec2(48);
-  options.shadow_resolution = {64, 32, 64};
-  options.volume.grid_cells = 8;
-  options.virtual_lights.count = 64;
-  options.negative_lights.count = 16;
-  options.area_lights.count = 16;
-  options.area_light_map = 32;
+  options.of<screen::ReflectiveShadowMap::Resolution>() = {64, 32, 64};
+  options.of<VolumeOptions>().grid_cells = 8;
+  options.of<screen::VirtualLightOptions>().count = 64;
+  options.of<screen::NegativeLightOptions>().count = 16;
+  options.of<screen::VirtualAreaLightOptions>().count = 16;
+  options.of<screen::AreaMapOptions>().texels = 32;
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context().software(), false);
   const auto made_in_next_frame = [&] {
@@ -48,13 +48,13 @@ TEST_P(SteadyFrame, MakesNoObjects) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, SteadyFrame,
-                         testing::Values(Setting{"none", screen::GiMode::none},
-                                         Setting{"volume", screen::GiMode::volume},
-                                         Setting{"volume_on_cpu", screen::GiMode::volume, screen::Backend::cpu},
-                                         Setting{"vpl", screen::GiMode::vpl},
-                                         Setting{"negative", screen::GiMode::negative},
-                                         Setting{"val", screen::GiMode::val}, Setting{"hybrid", screen::GiMode::hybrid},
-                                         Setting{"hybrid_on_cpu", screen::GiMode::hybrid, screen::Backend::cpu}),
+                         testing::Values(Setting{"none", Gi("none")},
+                                         Setting{"volume", Gi("volume")},
+                                         Setting{"volume_on_cpu", Gi("volume"), screen::Backend::cpu},
+                                         Setting{"vpl", Gi("vpl")},
+                                         Setting{"negative", Gi("negative")},
+                                         Setting{"val", Gi("val")}, Setting{"hybrid", Gi("hybrid")},
+                                         Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

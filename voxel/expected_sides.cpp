@@ -1,0 +1,116 @@
+#include "voxel/expected_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "shaders/shared/side.shared.h"
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr int kFine = 3;  // lines to a cell, on an edge
+
+/// The faces across one axis, one bit each.
+class FaceMarks {
+ public:
+  FaceMarks(const Grid& grid, int axis)
+      : grid_(grid), axis_(axis), marked_(size_t(shared::face_count(grid, axis)), false) {}
+
+  /// All lines of the family that meet the triangle (cell coordinates).
+  void mark(const std::array<glm::dvec3, 3>& t) {
+    const int b = shared::axis_b(axis_), c = shared::axis_c(axis_);
+    const glm::dvec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+    if (n[axis_] == 0.0) return;
+    const glm::ivec2 first = fine_line(glm::min(glm::min(t[0], t[1]), t[2]), 1);
+    const glm::ivec2 last = fine_line(glm::max(glm::max(t[0], t[1]), t[2]), 0);
+    for (int j = first.y; j <= last.y; ++j) {
+      const double at_c = (j + 0.5) / kFine;
+      const Range inside = span(t, b, c, at_c);
+      const int from = std::max(first.x, int(std::ceil(inside.low * kFine - 0.5)));
+      const int to = std::min(last.x, int(std::floor(inside.high * kFine - 0.5)));
+      for (int i = from; i <= to; ++i) {
+        const double at_b = (i + 0.5) / kFine;
+        const double depth = t[0][axis_] - (n[b] * (at_b - t[0][b]) + n[c] * (at_c - t[0][c])) / n[axis_];
+        mark_face(i / kFine, j / kFine, depth);
+      }
+    }
+  }
+  /// @param blocks  with sides, by block_index: those of the marked faces' cells become true.
+  void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
+    for (int face = 0; face < int(marked_.size()); ++face) {
+      if (!marked_[size_t(face)]) continue;
+      ++sum.faces;
+      glm::ivec3 cell = shared::face_coord(grid_, axis_, face);
+      for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
+        if (!shared::cell_inside(grid_, cell)) continue;
+        ++sum.sides;
+        blocks[size_t(block_index(leaf_blocks(grid_), cell / kLeafCells))] = true;
+      }
+    }
+  }
+
+ private:
+  struct Range {
+    double low = 1e30, high = -1e30;
+  };
+
+  /// First line at or after `p` (round_up), or last one at or before it, on the two other axes; inside the grid.
+  glm::ivec2 fine_line(glm::dvec3 p, int round_up) const {
+    const glm::dvec2 at = glm::dvec2(p[shared::axis_b(axis_)], p[shared::axis_c(axis_)]) * double(kFine) - 0.5;
+    const glm::dvec2 most =
+        glm::dvec2(kFine * grid_.cells[shared::axis_b(axis_)], kFine * grid_.cells[shared::axis_c(axis_)]);
+    return glm::ivec2(glm::clamp(round_up != 0 ? glm::ceil(at) : glm::floor(at), glm::dvec2(-1.0 + round_up),
+                                 most - 1.0 + double(round_up)));
+  }
+  /// Part of the row `at_c` that lies in the triangle, on axis b.
+  static Range span(const std::array<glm::dvec3, 3>& t, int b, int c, double at_c) {
+    Range range;
+    for (size_t i = 0; i < 3; ++i) {
+      const glm::dvec3 &p = t[i], &q = t[(i + 1) % 3];
+      if ((p[c] <= at_c) == (q[c] <= at_c)) continue;
+      const double x = p[b] + (q[b] - p[b]) * (at_c - p[c]) / (q[c] - p[c]);
+      range.low = std::min(range.low, x);
+      range.high = std::max(range.high, x);
+    }
+    return range;
+  }
+  void mark_face(int cell_b, int cell_c, double depth) {
+    const double face = std::floor(depth + 0.5);  // between the centres of cells face - 1 and face
+    if (face < 0.0 || face > grid_.cells[axis_]) return;
+    glm::ivec3 place;
+    place[axis_] = int(face);
+    place[shared::axis_b(axis_)] = cell_b;
+    place[shared::axis_c(axis_)] = cell_c;
+    marked_[size_t(shared::face_index(grid_, axis_, place))] = true;
+  }
+
+  const Grid& grid_;
+  int axis_;
+  std::vector<bool> marked_;
+};
+
+}  // namespace
+
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid) {
+  ExpectedSides sum;
+  const glm::ivec3 n = leaf_blocks(grid);
+  std::vector<bool> blocks(size_t(n.x) * size_t(n.y) * size_t(n.z), false);
+  for (int axis = 0; axis < 3; ++axis) {
+    FaceMarks marks(grid, axis);
+    for (const Mesh& mesh : scene.meshes) {
+      std::vector<glm::dvec3> cells;
+      cells.reserve(mesh.positions.size());
+      for (const glm::vec3& p : mesh.positions) cells.emplace_back(shared::cell_from_world(grid, p));
+      for (const glm::uvec3& t : mesh.triangles) marks.mark({cells[t.x], cells[t.y], cells[t.z]});
+    }
+    marks.count(sum, blocks);
+  }
+  sum.blocks = size_t(std::count(blocks.begin(), blocks.end(), true));
+  return sum;
+}
+
+}  // namespace volgi

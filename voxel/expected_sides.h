@@ -1,0 +1,21 @@
+#pragma once
+#include <cstddef>
+
+#include "core/scene.h"
+#include "voxel/grid.h"
+
+namespace volgi {
+
+/// What a voxelization will find, for limits that are checked before any memory is taken.
+struct ExpectedSides {
+  size_t faces = 0;   // that surfaces cross
+  size_t sides = 0;   // of these: two each, one at the grid's rim
+  size_t blocks = 0;  // of 8^3 cells, with sides
+};
+
+/// Marks the faces that the scene's triangles cross on the lines through the middles of thirds of cells, which is where
+/// both voxelizations look. Materials are not looked at: what alpha cuts away is counted.
+/// Cost: a step for each crossing, nine a face; memory: three bits a cell, and a bit a block.
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid);
+
+}  // namespace volgi
