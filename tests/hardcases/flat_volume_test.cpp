@@ -1,5 +1,6 @@
 // Scenes without extent along an axis have one layer of cells (accuracy.md: shape): what `volgi export` makes of them.
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <unistd.h>
 
 #include <cmath>
