@@ -1,6 +1,7 @@
 #include "propagation/crosscheck.h"
 
 #include <fmt/format.h>
+#include <openvdb/openvdb.h>
 
 #include <algorithm>
 #include <cmath>
@@ -137,8 +138,7 @@ CrosscheckRow compare_power(const VoxelGrid& voxels, const std::vector<glm::vec4
 
 /// Cells of the CPU from the GPU's, so that later stages start from the same.
 CellVolumes to_cell_volumes(const Grid& grid, const CellVolumesGl::Cells& cells) {
-  CellVolumes out{openvdb::FloatGrid::create(), openvdb::Vec3SGrid::create(), openvdb::Vec3SGrid::create(),
-                  openvdb::Vec3SGrid::create()};
+  CellVolumes out{vdb::make_float_grid(), vdb::make_vec3s_grid(), vdb::make_vec3s_grid(), vdb::make_vec3s_grid()};
   const auto set = [&](openvdb::Vec3SGrid& into, const openvdb::Coord& at, glm::vec3 v) {
     into.tree().setValue(at, openvdb::Vec3s(v.x, v.y, v.z));
   };

@@ -1,5 +1,7 @@
 #include "propagation/pulse_volume.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>

@@ -1,5 +1,6 @@
 #include "propagation/radiance_volume.h"
 
+#include <openvdb/openvdb.h>
 #include <openvdb/tools/ValueTransformer.h>
 
 #include <cassert>
@@ -15,8 +16,8 @@ const char* sh_grid_name(int coefficient) {
   return kNames[coefficient];
 }
 
-openvdb::Vec3SGrid::Ptr fluence(const RadianceVolume& radiance) {
-  openvdb::Vec3SGrid::Ptr fluence = radiance.sh.front()->deepCopy();
+vdb::Vec3SGridPtr fluence(const RadianceVolume& radiance) {
+  vdb::Vec3SGridPtr fluence = vdb::copy(*radiance.sh.front());
   fluence->setName("fluence");
   const float factor = 2.0f * std::sqrt(glm::pi<float>());
   openvdb::tools::foreach (fluence->beginValueOn(),

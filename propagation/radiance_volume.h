@@ -1,9 +1,8 @@
 #pragma once
-#include <openvdb/openvdb.h>
-
 #include <vector>
 
 #include "voxel/grid.h"
+#include "voxel/openvdb_fwd.h"
 
 namespace volgi {
 
@@ -11,12 +10,12 @@ namespace volgi {
 /// order 00, 1-1 (y), 10 (z), 11 (x), then 2-2, 2-1, 20, 21, 22 (docs/conventions.md#spherical-harmonics). The
 /// direction is the one that light travels. Index space is cell coordinates, the transform that of world_from_index.
 struct RadianceVolume {
-  std::vector<openvdb::Vec3SGrid::Ptr> sh;  // 4 or 9
+  std::vector<vdb::Vec3SGridPtr> sh;  // 4 or 9
 };
 
 /// Names of the coefficients' grids in files: sh_00, sh_1m1, sh_10, sh_11, sh_2m2, sh_2m1, sh_20, sh_21, sh_22.
 const char* sh_grid_name(int coefficient);
 /// Fluence [W m^-2] = sqrt(4 pi) sh_00.
-openvdb::Vec3SGrid::Ptr fluence(const RadianceVolume& radiance);
+vdb::Vec3SGridPtr fluence(const RadianceVolume& radiance);
 
 }  // namespace volgi

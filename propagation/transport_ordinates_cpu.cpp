@@ -1,5 +1,6 @@
 #include "propagation/transport_ordinates_cpu.h"
 
+#include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -146,7 +147,7 @@ RadianceVolume OrdinatesTransport::RadianceLeaves::volume(const Grid& grid) && {
   });
   RadianceVolume volume;
   for (size_t m = 0; m < 4; ++m) {
-    auto sh = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
+    auto sh = vdb::make_vec3s_grid();
     sh->setName(sh_grid_name(int(m)));
     sh->setTransform(world_from_index(grid, glm::dvec3(0.0)));
     for (Coefficients& leaves : by_block) {

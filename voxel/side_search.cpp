@@ -1,5 +1,6 @@
 #include "voxel/side_search.h"
 
+#include <openvdb/tree/Tree.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+#include <openvdb/openvdb.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 

@@ -1,3 +1,4 @@
+#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 

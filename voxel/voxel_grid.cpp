@@ -1,5 +1,8 @@
 #include "voxel/voxel_grid.h"
 
+#include <openvdb/Types.h>
+#include <openvdb/tree/Tree.h>
+
 namespace volgi {
 
 namespace {
@@ -20,7 +23,7 @@ VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides)
     : grid_(grid),
       blocks_(leaf_blocks(grid)),
       sides_(std::move(sides)),
-      tree_(std::make_shared<CellSidesTree>(0)),
+      tree_(vdb::make_int64_tree()),
       leaves_(size_t(blocks_.x) * size_t(blocks_.y) * size_t(blocks_.z), nullptr) {
   std::vector<Leaf*> writable(leaves_.size(), nullptr);
   for (size_t first = 0, last = 0; first < sides_.size(); first = last) {
@@ -38,7 +41,7 @@ VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const st
     : grid_(grid),
       blocks_(leaf_blocks(grid)),
       sides_(std::move(sides)),
-      tree_(std::make_shared<CellSidesTree>(0)),
+      tree_(vdb::make_int64_tree()),
       leaves_(leaves.begin(), leaves.end()) {
   for (Leaf* leaf : leaves) {
     if (leaf != nullptr) tree_->addLeaf(leaf);

@@ -1,12 +1,11 @@
 #pragma once
-#include <openvdb/Types.h>
-#include <openvdb/tree/Tree.h>
-
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "shaders/shared/side.shared.h"
 #include "voxel/grid.h"
+#include "voxel/openvdb_fwd.h"
 
 namespace volgi {
 
@@ -31,8 +30,8 @@ inline int leaf_offset(glm::ivec3 cell) {
 /// the order of faces; cells may come in any order. Memory: 4 KiB a leaf, 64 bytes a side, 8 bytes a block.
 class VoxelGrid {
  public:
-  using CellSidesTree = openvdb::tree::Tree4<std::int64_t, 5, 4, 3>::Type;
-  using Leaf = CellSidesTree::LeafNodeType;
+  using CellSidesTree = vdb::Tree<std::int64_t>;
+  using Leaf = vdb::Leaf<std::int64_t>;
 
   VoxelGrid() : VoxelGrid(Grid{}, {}) {}
   /// @param sides  those of one cell beside each other, in the order of faces. Faces stop everything where coverage
@@ -68,7 +67,7 @@ class VoxelGrid {
   Grid grid_{};
   glm::ivec3 blocks_{0};
   std::vector<shared::Side> sides_;
-  CellSidesTree::Ptr tree_;
+  std::shared_ptr<CellSidesTree> tree_;
   std::vector<const Leaf*> leaves_;              // by block
   std::vector<const std::int64_t*> leaf_cells_;  // their buffers, without OpenVDB's question whether they are in memory
 };

@@ -68,6 +68,7 @@ struct BenchCommand {
 nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const {
   const Scene scene = this->scene(name);
   screen::FrameOptions options;
+  options.recipe = "volume";
   options.size = glm::ivec2(size.value_or(512));
   options.of<VolumeOptions>().grid_cells = grid_cells;
   options.of<VolumeOptions>().scheme.scheme = scheme;

@@ -1,5 +1,6 @@
 #include "propagation/lobes/sh_lobes_radiance.h"
 
+#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
 #include "propagation/lobes/sh_lobes_kernels.h"
@@ -59,7 +60,7 @@ RadianceVolume LobeSum::radiance(const Grid& grid, float odd_sign) const {
     tbb::parallel_for(size_t(0), leaves_.size(), [&](size_t n) {
       if (!leaves_[n].empty()) leaves[n] = make_leaf(leaves_[n].data(), k, factor, kLeafCells * numbers_.block(int(n)));
     });
-    auto sh = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
+    auto sh = vdb::make_vec3s_grid();
     sh->setName(sh_grid_name(k));
     sh->setTransform(world_from_index(grid, glm::dvec3(0.0)));
     for (auto& leaf : leaves) {

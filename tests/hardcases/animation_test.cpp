@@ -66,6 +66,7 @@ class Animation : public GlTest {
   struct Technique {
     std::string name;
     screen::FrameOptions options;
+    options.recipe = "volume";
   };
   static std::vector<Technique> techniques() {
     return {{"none", options(Gi("none"))},

@@ -20,6 +20,7 @@ class Degenerate : public GlTest {
  protected:
   static screen::FrameOptions options() {
     screen::FrameOptions o;
+    o.recipe = "volume";
     o.size = {64, 64};
     o.of<VolumeOptions>().grid_cells = 12;
     return o;

@@ -1,6 +1,7 @@
 // Scenes without extent along an axis have one layer of cells (docs/hard-cases.md, "shape"): what `volgi export` makes
 // of them.
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <unistd.h>
 
 #include <cmath>

@@ -22,6 +22,7 @@ class Furnace : public GlTest {
     Camera camera = look_at_camera(turn * glm::vec3(0.3f, 0.2f, 0.7f), turn * glm::vec3(-0.4f, -0.3f, -1.0f), 1.2f,
                                    scene.bounds_min, scene.bounds_max);
     screen::FrameOptions options;
+    options.recipe = "volume";
     options.size = {64, 64};
     options.of<VolumeOptions>().grid_cells = grid_cells;
     options.of<VolumeOptions>().scheme.scheme = scheme;
@@ -50,6 +51,7 @@ class Furnace : public GlTest {
     scene.name = "furnace";
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
     screen::FrameOptions options;
+    options.recipe = "volume";
     options.size = {24, 24};
     options.of<VolumeOptions>().grid_cells = grid_cells;
     options.of<VolumeOptions>().scheme.scheme = scheme;

@@ -22,6 +22,7 @@ class InjectedFlux : public GlTest {
   static void expect_flux(const Scene& scene, glm::vec3 flux, bool roofed = false) {
     for (int cells : {16, 32, 64}) {
       screen::FrameOptions options;
+      options.recipe = "volume";
       options.size = {16, 16};
       options.of<VolumeOptions>().grid_cells = cells;
       options.bounces = 1;

@@ -20,6 +20,7 @@ class Invariance : public GlTest {
  protected:
   static screen::FrameOptions options(Scheme scheme = Scheme::ordinates) {
     screen::FrameOptions o;
+    o.recipe = "volume";
     o.size = {64, 64};
     o.of<VolumeOptions>().grid_cells = 12;
     o.of<VolumeOptions>().scheme.scheme = scheme;

@@ -19,6 +19,7 @@ class Leak : public GlTest {
 
   static screen::FrameOptions options(int cells, float shift) {
     screen::FrameOptions o;
+    o.recipe = "volume";
     o.size = kSize;
     o.of<VolumeOptions>().grid_cells = cells;
     o.of<VolumeOptions>().grid_shift_cells = glm::vec3(shift);

@@ -24,6 +24,7 @@ class Long : public GlTest {
     Scene scene;
     add_box_inside(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f)), glm::vec3(0.0f), glm::vec3(1.0f));
     screen::FrameOptions o;
+    o.recipe = "volume";
     o.size = {24, 24};
     o.of<VolumeOptions>() = volume;
     o.of<VolumeOptions>().grid_cells = 12;

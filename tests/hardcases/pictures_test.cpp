@@ -31,6 +31,7 @@ class Pictures : public GlTest {
 
   static Metrics::Relative indirect_error(const std::string& name, Scheme scheme) {
     screen::FrameOptions options;
+    options.recipe = "volume";
     options.size = {192, 192};
     options.light = screen::LightPart::indirect;
     options.of<VolumeOptions>().scheme.scheme = scheme;
@@ -95,6 +96,7 @@ TEST_F(Pictures, ThinWallDarkRoom) {
                                      {32, 0.25f, 0.02},
                                      {32, 0.5f, 0.02}}) {
     screen::FrameOptions options;
+    options.recipe = "volume";
     options.size = {192, 192};
     options.of<VolumeOptions>().grid_cells = cells;
     options.of<VolumeOptions>().grid_shift_cells = glm::vec3(shift);
@@ -116,6 +118,7 @@ TEST_F(Pictures, ThinWallDarkRoom) {
 TEST_F(Pictures, PassTimesSumToTheFrame) {
   const Scene scene = load_scene(kData / "cornell.glb");
   screen::FrameOptions options;
+  options.recipe = "volume";
   options.size = {128, 128};
   options.of<VolumeOptions>().grid_cells = 16;
   options.backend = tested_backend();
@@ -136,6 +139,7 @@ TEST_F(Pictures, AtriumRenders) {
   const fs::path file = build_dir() / "data/atrium.glb";
   ASSERT_TRUE(fs::exists(file)) << "build the target volgi_data";
   screen::FrameOptions options;
+  options.recipe = "volume";
   options.size = {256, 256};
   const Image image = render_file(file, options).image;
   double sum = 0.0;
@@ -149,6 +153,7 @@ TEST_F(Pictures, AtriumRenders) {
 
 TEST_F(Pictures, SameBytesTwice) {
   screen::FrameOptions options;
+  options.recipe = "volume";
   options.size = {64, 64};
   options.of<VolumeOptions>().grid_cells = 16;
   const Image a = render_file(kData / "cornell.glb", options).image;

@@ -15,6 +15,7 @@ class Twin : public GlTest {
  protected:
   static screen::VolumeReport report(const Scene& scene, screen::Backend backend) {
     screen::FrameOptions options;
+    options.recipe = "volume";
     options.size = {16, 16};
     options.backend = backend;
     options.of<VolumeOptions>().scheme.directions = 24;
@@ -52,6 +53,7 @@ TEST_F(Twin, PapersSchemes) {
       double sums[2] = {};
       for (screen::Backend backend : {screen::Backend::gpu, screen::Backend::cpu}) {
         screen::FrameOptions options;
+        options.recipe = "volume";
         options.size = {32, 32};
         options.backend = backend;
         options.light = light;

@@ -2,6 +2,7 @@
 #include "propagation/pulse_volume.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include "tests/propagation/pulse_rooms.h"
@@ -10,8 +11,7 @@ namespace volgi::test {
 namespace {
 
 CellVolumes no_surfaces() {
-  return {openvdb::FloatGrid::create(0.0f), openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f)),
-          openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f)), openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f))};
+  return {vdb::make_float_grid(), vdb::make_vec3s_grid(), vdb::make_vec3s_grid(), vdb::make_vec3s_grid()};
 }
 
 void occupy(CellVolumes& cells, glm::ivec3 c, float occupancy, glm::vec3 albedo, glm::vec3 normal) {

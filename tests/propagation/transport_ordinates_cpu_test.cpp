@@ -3,6 +3,7 @@
 #include "propagation/transport_ordinates_cpu.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cstring>

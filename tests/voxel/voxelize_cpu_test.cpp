@@ -1,6 +1,7 @@
 #include "voxel/voxelize_cpu.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <cstring>

@@ -1,3 +1,5 @@
+#include <openvdb/openvdb.h>
+
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"

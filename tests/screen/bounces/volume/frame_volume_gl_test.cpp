@@ -16,6 +16,7 @@ class FrameVolumeGl : public GlTest {
  protected:
   static screen::FrameOptions options(Scheme scheme, screen::Backend backend) {
     screen::FrameOptions o;
+    o.recipe = "volume";
     o.size = {16, 16};
     o.backend = backend;
     o.of<VolumeOptions>().scheme.scheme = scheme;
@@ -39,9 +40,9 @@ TEST_F(FrameVolumeGl, CoarseGridIsRefusedWhereThereIsNone) {
   screen::FrameOptions cpu = options(Scheme::conservative, screen::Backend::cpu);
   EXPECT_FALSE(report(scene_, gpu).coarse_start);
   EXPECT_TRUE(report(scene_, cpu).coarse_start);
-  cpu.volume.scheme.coarse_start = false;
+  cpu.of<VolumeOptions>().scheme.coarse_start = false;
   EXPECT_FALSE(report(scene_, cpu).coarse_start);
-  gpu.volume.scheme.coarse_start = true;
+  gpu.of<VolumeOptions>().scheme.coarse_start = true;
   try {
     screen::Frame(scene_, gpu);
     FAIL() << "not refused";
