@@ -47,10 +47,11 @@ void add_choices(const Verdict& v, std::vector<Sentence>& out) {
     }
     out.push_back({text + "."});
   }
-  const bool tracer = path_tracer_ms(v, 1.0).has_value();
+  const bool tracer = path_tracer_time(v, 1.0).has_value();
   for (const Verdict::Choice& c : v.by_speedup) {
     if (!tracer) continue;
-    out.push_back({fmt::format("Under 1/{:g} of the path tracer's time to the same error: {}.", c.limit,
+    out.push_back({fmt::format("Under 1/{:g} of the path tracer's time to the same error{}: {}.", c.limit,
+                               c.extrapolated ? " (extrapolated by 1/error² beyond its best point)" : "",
                                c.realtime ? described(*c.realtime) : "nothing")});
   }
 }
@@ -119,10 +120,10 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     Json verdict{{"scene", v.scene},
                  {"light", v.light},
                  {"front", Json::array()},
-                 {"beats_hybrid", Json::array()},
+                 {"beats_baseline", Json::array()},
                  {"says", Json::array()}};
     for (const size_t i : v.front) verdict["front"].push_back(v.judged[i].point->at("key"));
-    for (const Judged* j : v.beating) verdict["beats_hybrid"].push_back(j->point->at("key"));
+    for (const Judged* j : v.beating) verdict["beats_baseline"].push_back(j->point->at("key"));
     for (const Sentence& s : sentences(v)) verdict["says"].push_back(s.text);
     out["verdicts"].push_back(std::move(verdict));
   }
@@ -132,11 +133,11 @@ void write_json(const Report& report, const std::filesystem::path& path) {
 std::vector<Sentence> sentences(const Verdict& v) {
   std::vector<Sentence> out;
   add_choices(v, out);
-  if (v.hybrid != nullptr) {
+  if (v.baseline != nullptr) {
     std::string text;
     for (const Judged* j : v.beating) text.append(text.empty() ? "" : ", ").append(described(*j));
-    const std::string own =
-        "hybrid at its defaults (" + figure(v.hybrid->time_ms) + " ms, " + percent(v.hybrid->error_percent) + ")";
+    const std::string own = v.baseline->label + " at its defaults (" + figure(v.baseline->time_ms) + " ms, " +
+                            percent(v.baseline->error_percent) + ")";
     out.push_back({text.empty() ? "No other technique is both faster and more accurate than " + own + "."
                                 : "Both faster and more accurate than " + own + ": " + text + ".",
                    !text.empty()});

@@ -27,7 +27,7 @@ struct Report {
 void write_csv(const Report& report, const std::filesystem::path& path);
 void write_json(const Report& report, const std::filesystem::path& path);
 
-/// What a verdict says in words, a sentence an entry: what to choose, what beats hybrid, what stands out.
+/// What a verdict says in words, a sentence an entry: what to choose, what beats the baseline, what stands out.
 struct Sentence {
   std::string text;
   bool warning = false;

@@ -122,6 +122,7 @@ Json measure_point(const ReportScene& scene, const Setting& setting, const std::
   point["date"] = date_now();
   point["varied"] = setting.varied;
   point["one_bounce"] = setting.one_bounce;
+  point["baseline"] = setting.baseline;
   point["triangles"] = scene.scene.triangle_count();
   point["command"] = command_of(scene, setting, light, context);
   point["reference"] = all_bounces.path.string();

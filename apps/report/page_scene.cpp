@@ -33,8 +33,8 @@ const Judged* judged(const Verdict& verdict, const Json& point) {
 
 std::optional<double> times_faster(const Json& point, const Verdict& verdict) {
   const Judged* j = judged(verdict, point);
-  const auto tracer = j != nullptr && !j->path_tracer ? path_tracer_ms(verdict, j->error_percent) : std::nullopt;
-  return tracer ? std::optional(*tracer / j->time_ms) : std::nullopt;
+  const auto tracer = j != nullptr && !j->path_tracer ? path_tracer_time(verdict, j->error_percent) : std::nullopt;
+  return tracer ? std::optional(tracer->ms / j->time_ms) : std::nullopt;
 }
 
 std::optional<double> memory_mib(const Json& point, const Verdict&) {
@@ -58,7 +58,9 @@ constexpr Column kColumns[] = {
     {"one bounce [%]", "error against the reference of one bounce",
      VOLGI_FIGURE("one_bounce_metrics", "rmse_pct_denoised")},
     {"memory [MiB]", "of GL objects and volume", memory_mib},
-    {"× faster", "time of the path tracer to the same error, over this time", times_faster},
+    {"× faster",
+     "time of the path tracer to the same error, over this time; beyond its best point extrapolated by 1/error²",
+     times_faster},
 };
 #undef VOLGI_FIGURE
 
@@ -81,7 +83,9 @@ std::string trace_of(const Json& point) {
 
 std::string name_of(const Json& point) {
   const std::string varied = point.value("varied", std::string());
-  return escaped(point.at("technique").get<std::string>()) +
+  const auto all = point.value("options", std::vector<std::string>());
+  return fmt::format("<span title=\"{}\">{}</span>", escaped(fmt::format("{}", fmt::join(all, " "))),
+                     escaped(point.at("technique").get<std::string>())) +
          (varied.empty() ? "" : fmt::format(" <span class=\"option\">{}</span>", escaped(varied)));
 }
 
@@ -132,10 +136,11 @@ std::string gallery(const Verdict& verdict, const std::set<std::string>& front, 
   for (const Judged& j : verdict.judged) {
     const Json& p = *j.point;
     if (!(j.is_default || front.contains(p["key"].get<std::string>())) || !p.contains("picture")) continue;
-    out += fmt::format(
-        "<div class=\"triple\" data-key=\"{}\" data-label=\"{}\">{}{}</div>", p["key"].get<std::string>(),
-        escaped(j.label), image(folder, p["picture"], "result", fmt::format("{}: {} ms", j.label, figure(j.time_ms))),
-        image(folder, p["error_picture"], "error", fmt::format("its error: {}", percent(j.error_percent))));
+    out +=
+        fmt::format("<div class=\"triple\" data-key=\"{}\"{} data-label=\"{}\">{}{}</div>", p["key"].get<std::string>(),
+                    &j == verdict.baseline ? " data-baseline" : "", escaped(j.label),
+                    image(folder, p["picture"], "result", fmt::format("{}: {} ms", j.label, figure(j.time_ms))),
+                    image(folder, p["error_picture"], "error", fmt::format("its error: {}", percent(j.error_percent))));
   }
   return "<details class=\"gallery\" open><summary>Pictures</summary><div class=\"pictures\">" + out +
          "</div><p class=\"scale\"><span>−50 % too dark</span><span>0</span><span>too bright +50 "

@@ -46,15 +46,21 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return out + "\n";
 }
 
+// All that was asked for; what is not there is the program's default.
+std::string options_of(const Json& point) {
+  return fmt::format("`{}`", fmt::join(point.at("options").get<std::vector<std::string>>(), " "));
+}
+
 // Techniques at their defaults, and what else is on the front.
 std::string points_table(const Verdict& v) {
-  std::vector<std::vector<std::string>> rows{{"technique", "time [ms]", "from – to", "error [%]", "energy", ""}};
+  std::vector<std::vector<std::string>> rows{
+      {"technique", "options", "time [ms]", "from – to", "error [%]", "energy", ""}};
   for (size_t i = 0; i < v.judged.size(); ++i) {
     const Judged& j = v.judged[i];
     const bool on_front = std::find(v.front.begin(), v.front.end(), i) != v.front.end();
     if (!j.is_default && !on_front) continue;
     const Json& frame = j.point->at("frame_ms");
-    rows.push_back({j.label, figure(j.time_ms),
+    rows.push_back({j.label, options_of(*j.point), figure(j.time_ms),
                     figure(frame["min"].get<double>()) + " – " + figure(frame["max"].get<double>()),
                     figure(j.error_percent), figure(j.point->at("metrics").at("ratio").get<double>()),
                     std::string(on_front ? "front" : "") +
@@ -64,7 +70,7 @@ std::string points_table(const Verdict& v) {
 }
 
 std::string pictures(const Verdict& v, const fs::path& folder, const fs::path& files, const std::string& relative) {
-  const Judged* shown = v.hybrid != nullptr ? v.hybrid : v.front.empty() ? nullptr : &v.judged[v.front.back()];
+  const Judged* shown = v.baseline != nullptr ? v.baseline : v.front.empty() ? nullptr : &v.judged[v.front.back()];
   if (shown == nullptr || !shown->point->contains("picture")) return "";
   const std::string stem = v.scene + "-" + v.light;
   copy_picture(folder / fmt::format("pictures/{}.png", stem), files / (stem + "-reference.png"));
@@ -113,7 +119,8 @@ void write_summary(const Report& report, const fs::path& folder, const fs::path&
       "pixels, times are medians of {} frames after warm-up, from – to their range; another run's median may lie "
       "{:.0f} % "
       "outside it. Error: RMSE in percent of the reference's mean, its noise "
-      "removed, region noedge. Ratios within a table may be carried to another machine, times may not.\n\n",
+      "removed, region noedge. Options that a row does not name have the program's defaults (`volgi render --help`). "
+      "Ratios within a table may be carried to another machine, times may not.\n\n",
       report.command, fmt::join(report.all("device"), "; "), fmt::join(report.all("machine"), "; "),
       fmt::join(report.all("program"), "; "), report.last_date(), report.points.size(), p["size"][0].get<int>(),
       p["size"][1].get<int>(), p["frames"].get<int>(), 100.0 * (kSpreadOfRuns - 1.0));

@@ -38,6 +38,7 @@ void add_technique(Sweep& sweep, const Json& table, const Json& entry) {
   own.technique = entry.at("name").get<std::string>();
   own.renderer = entry.value("command", std::string("render"));
   own.one_bounce = entry.value("one_bounce", false);
+  own.baseline = entry.value("baseline", false);
   own.options = pairs_of(entry, "options");
   own.lights = strings(entry, "lights", all);
   if (entry.value("unvaried", true)) sweep.settings.push_back(own);

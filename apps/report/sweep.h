@@ -13,8 +13,9 @@ struct Setting {
   std::string varied;                // what differs from the technique's own line; empty for that line itself
   std::vector<std::string> lights;   // full, indirect
   bool one_bounce = false;           // carries the first bounce only, and is compared with that as well
+  bool baseline = false;             // the technique that others are held against
 
-  /// "hybrid" or "hybrid --vals 8".
+  /// The technique, and what it differs in: "volume --grid 16".
   std::string label() const { return varied.empty() ? technique : technique + " " + varied; }
 };
 
@@ -29,8 +30,9 @@ struct Sweep {
 
 /// Reads the table of techniques (data/report/full.json): each has a "name", its "options" as on the command line, and
 /// a sweep: "vary" changes one option at a time through the values listed, "also" adds options together; with
-/// "unvaried" false the technique's own line is no point. "one_bounce" says that it carries one bounce; "lights" and
-/// "varied_lights" are those that its own line and the others are measured in, of the whole table where it names none.
+/// "unvaried" false the technique's own line is no point. "baseline" marks what others are held against. "one_bounce"
+/// says that it carries one bounce; "lights" and "varied_lights" are those that its own line and the others are
+/// measured in, of the whole table where it names none.
 /// @param name  of the file, for messages. @throws Error(bad_input) naming the technique and what is wrong with it.
 Sweep parse_sweep(std::string_view json, const std::string& name);
 

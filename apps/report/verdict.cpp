@@ -49,22 +49,24 @@ void choose(Verdict& v) {
   for (const double speedup : {10.0, 100.0}) {
     Verdict::Choice choice{speedup, nullptr, nullptr};
     for (const Judged& j : v.judged) {
-      const std::optional<double> tracer_ms = path_tracer_ms(v, j.error_percent);
-      if (j.path_tracer || !tracer_ms || *tracer_ms < speedup * j.time_ms) continue;
-      if (choice.realtime == nullptr || j.error_percent < choice.realtime->error_percent) choice.realtime = &j;
+      const std::optional<TracerTime> tracer = path_tracer_time(v, j.error_percent);
+      if (j.path_tracer || !tracer || tracer->ms < speedup * j.time_ms) continue;
+      if (choice.realtime != nullptr && j.error_percent >= choice.realtime->error_percent) continue;
+      choice.realtime = &j;
+      choice.extrapolated = tracer->extrapolated;
     }
     v.by_speedup.push_back(choice);
   }
 }
 
-void hold_against_hybrid(Verdict& v) {
+void hold_against_baseline(Verdict& v) {
   for (const Judged& j : v.judged) {
-    if (j.is_default && j.point->at("technique") == kHybrid) v.hybrid = &j;
+    if (j.is_default && j.baseline) v.baseline = &j;
   }
-  if (v.hybrid == nullptr) return;
+  if (v.baseline == nullptr) return;
   for (const Judged& j : v.judged) {
-    if (j.point->at("technique") == kHybrid) continue;
-    if (j.time_ms < v.hybrid->time_ms && j.error_percent < v.hybrid->error_percent) v.beating.push_back(&j);
+    if (j.baseline) continue;
+    if (j.time_ms < v.baseline->time_ms && j.error_percent < v.baseline->error_percent) v.beating.push_back(&j);
   }
 }
 
@@ -123,32 +125,34 @@ Verdict judge_points(const std::vector<Json>& points, const std::string& scene, 
     const std::optional<double> error = error_of(point);
     if (!error) continue;
     v.judged.push_back({&point, label_of(point), point.at("frame_ms").at("median").get<double>(), *error,
-                        point.value("varied", std::string()).empty(), point.at("renderer") == "reference"});
+                        point.value("varied", std::string()).empty(), point.at("renderer") == "reference",
+                        point.value("baseline", false)});
   }
   std::stable_sort(v.judged.begin(), v.judged.end(), [](const Judged& a, const Judged& b) {
     return a.time_ms != b.time_ms ? a.time_ms < b.time_ms : a.error_percent < b.error_percent;
   });
   v.front = front_of(v.judged);
   choose(v);
-  hold_against_hybrid(v);
+  hold_against_baseline(v);
   return v;
 }
 
-std::optional<double> path_tracer_ms(const Verdict& verdict, double error_percent) {
+std::optional<TracerTime> path_tracer_time(const Verdict& verdict, double error_percent) {
   std::vector<const Judged*> tracer;  // from the cheapest on, each better than the last
   for (const Judged& j : verdict.judged) {
     if (j.path_tracer && (tracer.empty() || j.error_percent < tracer.back()->error_percent)) tracer.push_back(&j);
   }
   if (tracer.empty()) return std::nullopt;
-  if (error_percent >= tracer.front()->error_percent) return tracer.front()->time_ms;
+  if (error_percent >= tracer.front()->error_percent) return TracerTime{tracer.front()->time_ms, false};
   for (size_t i = 1; i < tracer.size(); ++i) {
     if (error_percent < tracer[i]->error_percent) continue;
     const double from = std::log(tracer[i - 1]->error_percent), to = std::log(std::max(tracer[i]->error_percent, 1e-9));
     const double share = (std::log(error_percent) - from) / (to - from);
-    return std::exp(std::lerp(std::log(tracer[i - 1]->time_ms), std::log(tracer[i]->time_ms), share));
+    return TracerTime{std::exp(std::lerp(std::log(tracer[i - 1]->time_ms), std::log(tracer[i]->time_ms), share)),
+                      false};
   }
   const double ratio = tracer.back()->error_percent / std::max(error_percent, 1e-9);
-  return tracer.back()->time_ms * ratio * ratio;
+  return TracerTime{tracer.back()->time_ms * ratio * ratio, true};
 }
 
 }  // namespace volgi::app

@@ -14,10 +14,8 @@ struct Judged {
   double time_ms, error_percent;
   bool is_default;   // the technique's own line of the sweep
   bool path_tracer;  // renderer "reference"
+  bool baseline;     // of the technique that others are held against (Setting::baseline)
 };
-
-/// Name of the technique that others are held against.
-inline constexpr const char* kHybrid = "hybrid";
 
 /// What one scene and light comes to.
 struct Verdict {
@@ -29,12 +27,13 @@ struct Verdict {
   /// times as long for, to the same error. Null where there is none.
   struct Choice {
     double limit;
-    const Judged* any;       // path tracer included; null for `by_speedup`
-    const Judged* realtime;  // path tracer left out
+    const Judged* any;          // path tracer included; null for `by_speedup`
+    const Judged* realtime;     // path tracer left out
+    bool extrapolated = false;  // of `by_speedup`: the path tracer was not measured to this error
   };
   std::vector<Choice> by_error;        // limits in percent
   std::vector<Choice> by_speedup;      // limits: how many times faster
-  const Judged* hybrid = nullptr;      // at its defaults
+  const Judged* baseline = nullptr;    // at its defaults; none: the sweep marks no technique
   std::vector<const Judged*> beating;  // both faster and lower in error than that
   std::vector<std::string> findings;   // what stands out as wrong: errors, black, a constant factor, energy
 
@@ -48,11 +47,15 @@ struct Verdict {
 Verdict judge_points(const std::vector<nlohmann::ordered_json>& points, const std::string& scene,
                      const std::string& light);
 
+struct TracerTime {
+  double ms;
+  bool extrapolated;  // beyond its best point: not measured
+};
 /// Time the path tracer needs to an error: between its points straight in log-log; beyond its best one by 1/error²,
-/// which is how its error falls; never less than its cheapest point. None where it was not measured.
-std::optional<double> path_tracer_ms(const Verdict& verdict, double error_percent);
+/// which is how its error falls; never less than its cheapest point. None where it was not measured at all.
+std::optional<TracerTime> path_tracer_time(const Verdict& verdict, double error_percent);
 
-/// "hybrid --vals 8": technique and what it differs in.
+/// Technique and what it differs in: "volume --grid 16".
 std::string label_of(const nlohmann::ordered_json& point);
 
 }  // namespace volgi::app

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/log.h"
+#include "core/visibility/openness.h"
 #include "core/scene.h"
 #include "core/virtual_light_list.h"
 #include "reference/path_tracer.h"
@@ -44,6 +45,7 @@ ReferencePicture traced(const ReferenceOptions& options) {
   tracer.light = asked_light(options.light);
   if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
   const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  warn_of_open_scene(scene, glm::vec3(options.scene.camera(scene).world_from_camera[3]));
   return path_trace(scene, options.scene.camera(scene), tracer);
 }
 

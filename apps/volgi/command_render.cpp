@@ -18,6 +18,7 @@
 #include "core/progress.h"
 #include "core/scene_source.h"
 #include "core/virtual_light_list.h"
+#include "core/visibility/openness.h"
 #include "screen/base/image_from_texture.h"
 #include "screen/frame/frame.h"
 #include "screen/frame/registry.h"
@@ -151,7 +152,8 @@ int RenderCommand::run() const {
   const SceneSource source(scene.scene_path);
   const WorldBox box = box_of(source, times);
   Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
-  scene.camera(loaded);  // says so now if there is none
+  // Says so now if there is none.
+  warn_of_open_scene(loaded, glm::vec3(scene.camera(loaded).world_from_camera[3]));
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   screen::Frame picture(loaded, options);

@@ -52,7 +52,6 @@ void FrameCommandOptions::add_to(CLI::App& command) {
 
 screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const {
   screen::FrameOptions o;
-  o.recipe = "volume";
   o.light = LIGHTS.at(light);
   o.size = size;
   o.backend = BACKENDS.at(backend);

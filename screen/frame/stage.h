@@ -65,7 +65,7 @@ class Stage {
 
 /// A technique in the registry.
 struct StageType {
-  const char* name;  // its leaf: "gather/strided"
+  const char* name;  // its leaf: "SLOT/TECHNIQUE"
   Slot slot;
   std::span<const Parameter> parameters;
   /// @throws Error(usage) for options that do not go together.

@@ -163,7 +163,7 @@
     const wipe = viewer.querySelector(".wipe");
     const slider = viewer.querySelector("input");
     for (const triple of triples) point.add(new Option(triple.dataset.label, triple.dataset.key));
-    const own = triples.find((t) => t.dataset.label === "hybrid");
+    const own = triples.find((t) => "baseline" in t.dataset);
     if (own) point.value = own.dataset.key;
     right.value = "result";
     const picture = (role) => (role === "reference" ? reference

@@ -19,6 +19,7 @@ Json point(const std::string& technique, const std::string& varied, double time_
       {"technique", technique},
       {"varied", varied},
       {"renderer", renderer},
+      {"baseline", technique == "hybrid"},
       {"frame_ms", {{"min", time_ms}, {"median", time_ms}, {"max", time_ms}}},
       {"metrics",
        {{"test_mean", 1.0}, {"ratio", 1.0}, {"scale", 1.0}, {"rmse_pct", error + 1}, {"rmse_pct_denoised", error}}}};
@@ -57,14 +58,30 @@ TEST(Verdict, ChoosesByErrorAndByThePathTracersTime) {
   EXPECT_EQ(v.by_error[0].any, nullptr);                   // 2 %
   EXPECT_EQ(v.by_error[1].any->label, "hybrid --vals 8");  // 5 %
   EXPECT_EQ(v.by_error[2].any->label, "mid");              // 10 %
-  EXPECT_NEAR(*path_tracer_ms(v, 6.0), 1000 * (8.0 / 6) * (8.0 / 6), 1e-6);
-  EXPECT_NEAR(*path_tracer_ms(v, 2.0), 16000, 1e-6);  // beyond its best, by 1/error²
-  EXPECT_EQ(*path_tracer_ms(v, 50.0), 1000);          // it has no cheaper picture
+  EXPECT_NEAR(path_tracer_time(v, 6.0)->ms, 1000 * (8.0 / 6) * (8.0 / 6), 1e-6);
+  EXPECT_NEAR(path_tracer_time(v, 2.0)->ms, 16000, 1e-6);  // beyond its best, by 1/error²
+  EXPECT_EQ(path_tracer_time(v, 50.0)->ms, 1000);          // it has no cheaper picture
   EXPECT_EQ(v.by_speedup[0].realtime->label, "hybrid --vals 8");
   EXPECT_EQ(v.by_speedup[1].realtime->label, "fast");  // 1000/10; mid is 20 times faster only
 }
 
-TEST(Verdict, NamesWhatBeatsHybridAtItsDefaults) {
+TEST(Verdict, SaysWhereThePathTracersTimeIsExtrapolated) {
+  std::vector<Json> points = some_points();
+  const auto says = [&] {
+    std::string all;
+    for (const Sentence& s : sentences(judge_points(points, "s", "indirect"))) all += s.text + "\n";
+    return all;
+  };
+  EXPECT_EQ(says().find("extrapolated"), std::string::npos) << says();
+  points.push_back(point("sharp", "", 20, 2));  // better than the path tracer's best, 4 %
+  const Verdict v = judge_points(points, "s", "indirect");
+  EXPECT_TRUE(path_tracer_time(v, 2.0)->extrapolated);
+  EXPECT_FALSE(path_tracer_time(v, 4.0)->extrapolated);
+  EXPECT_TRUE(v.by_speedup[1].extrapolated);
+  EXPECT_NE(says().find("extrapolated by 1/error²"), std::string::npos) << says();
+}
+
+TEST(Verdict, NamesWhatBeatsTheBaselineAtItsDefaults) {
   std::vector<Json> points = some_points();
   EXPECT_TRUE(judge_points(points, "s", "indirect").beating.empty());  // another setting of hybrid is hybrid
   points.push_back(point("better", "--grid 8", 99, 5.9));
@@ -92,7 +109,7 @@ TEST(Verdict, NothingMeasuredIsSaid) {
   const std::vector<Json> points;
   const Verdict v = judge_points(points, "s", "indirect");
   EXPECT_TRUE(v.front.empty());
-  EXPECT_FALSE(path_tracer_ms(v, 1.0).has_value());
+  EXPECT_FALSE(path_tracer_time(v, 1.0).has_value());
   EXPECT_FALSE(sentences(v).empty());
   EXPECT_EQ(plot_svg(v, true), "");
 }
