@@ -14,6 +14,7 @@ struct SideFlux {
   std::vector<glm::vec4> emitted;   // emission: its first arrival is direct light
   std::vector<glm::vec4> punctual;  // reflected light of punctual sources
   glm::vec3 lost{0.0f};             // flux that found no side anywhere near [W]
+  bool emits = false;               // `emitted` is light of an order of its own
 };
 
 /// Deposits samples on the sides that stand for their points (docs/theory.md#light-in): the sum over sides and `lost`

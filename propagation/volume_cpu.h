@@ -3,8 +3,6 @@
 
 #include "core/mipmaps.h"
 #include "core/scene.h"
-#include "core/visibility/embree_scene.h"
-#include "core/visibility/virtual_lights_cpu.h"
 #include "propagation/bounces.h"
 #include "propagation/pulse_volume.h"
 #include "propagation/volume_options.h"
@@ -13,8 +11,9 @@
 
 namespace volgi {
 
-/// The whole volume subsystem on the CPU, without any GL: voxelization, light in by Embree rays, propagation,
-/// irradiance per side. run() does all of it; the stages are apart for timers and for the cross-check.
+/// The volume subsystem on the CPU, without any GL: voxelization, propagation, irradiance per side, each apart for
+/// timers. Light comes as SideFlux from whoever has it: of lamps and emissive surfaces
+/// propagation/light_in/direct_light_cpu.h, of virtual lights propagation/light_in/side_gather.h.
 class VolumeCpu {
  public:
   /// @param scene  must outlive the volume.
@@ -23,46 +22,35 @@ class VolumeCpu {
   VolumeCpu(const Scene& scene, const VolumeOptions& options);
   ~VolumeCpu();
 
-  /// The scene has moved within the same grid, in place: rays and emission meet it where it is now. Materials, textures
-  /// and images must be the same. Cost: Embree's tree on one thread, 1 ms for some 2000 triangles.
+  /// The scene has moved within the same grid, in place. Materials, textures and images must be the same.
   void scene_moved();
 
-  void run();
-  // The stages of run(), in this order.
+  // In this order:
   void voxelize();
-  void light_in();  // as options.source says
+  /// @param flux  of the sides of voxels().
+  void light_in(SideFlux flux);
   void propagate();
   void irradiate();
 
   const Grid& grid() const { return grid_; }
   const VoxelGrid& voxels() const { return voxels_; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
-  /// After a first bounce: of what virtual lights brought; all of it counts as `punctual` unless orders are counted.
   const SideFlux& flux() const { return flux_; }
   /// Of schemes that carry sides. After a first bounce on the screen `indirect` holds bounces 2 ... n of punctual light
   /// and 1 ... n of emission, `direct` nothing.
   const SideIrradiance& irradiance() const { return irradiance_; }
-  const VirtualLightsCpu& virtual_lights() const { return virtual_lights_; }  // of Source::first_bounce
   const BounceReport& report() const { return report_; }
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
   RadianceVolume radiance();
-  bool emits() const { return emits_; }
   /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
   bool has_coarse_part() const;
   size_t bytes() const;
 
  private:
-  void look_at_geometry();
-  void direct_light_in();
-  void first_bounce_in();
-
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;
   BounceRules rules_;
-  std::unique_ptr<EmbreeScene> embree_;
-  std::unique_ptr<EmitterPoints> emitters_;  // of Source::first_bounce
-  VirtualLightsCpu virtual_lights_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;
@@ -71,7 +59,6 @@ class VolumeCpu {
   std::unique_ptr<PulseVolume> pulse_;
   SideIrradiance irradiance_;
   BounceReport report_;
-  bool emits_ = false;
   bool moved_ = false;  // since the last voxelization
 };
 

@@ -15,11 +15,6 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
     if (o.warm_start || o.passes_a_run)
       throw Error(ExitCode::usage, "the papers' schemes start every frame anew: no warm start, no amortised frames");
   }
-  if (o.virtual_lights < 1 || o.virtual_lights > VolumeOptions::kMostVirtualLights)
-    throw Error(ExitCode::usage, fmt::format("{} virtual lights: the number must lie between 1 and {}",
-                                             o.virtual_lights, VolumeOptions::kMostVirtualLights));
-  if (o.virtual_light_candidates < 1 || o.virtual_light_candidates > 64 || o.virtual_light_stride.value_or(1) < 1)
-    throw Error(ExitCode::usage, "virtual lights: from 1 to 64 candidates for each, and a stride of at least 1");
   BounceRules rules;
   rules.bounces = o.bounces;
   // The screen carries one; emission has one order more, whose arrival is then bounce 1 (BounceRules::bounces).

@@ -18,15 +18,11 @@ struct VolumeOptions {
   BounceRules::Solver solver = BounceRules::Solver::automatic;
   bool warm_start = false;
   std::optional<int> passes_a_run;
-  /// What the volume starts from. lights: direct light, and it carries all of the rest. first_bounce: the irradiance of
-  /// virtual lights at its sides, where the screen carries the first bounce of punctual light and the arrival of
-  /// emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission (docs/theory.md#composition).
+  /// What the flux that it is given stands for. lights: what lit and emissive surfaces send, and it carries all of the
+  /// rest. first_bounce: what sides reflect of virtual lights, where the screen carries the first bounce of punctual
+  /// light and the arrival of emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission
+  /// (docs/theory.md#composition).
   enum class Source { lights, first_bounce } source = Source::lights;
-  // Of first_bounce (core/visibility/virtual_lights_cpu.h, propagation/side_gather.h):
-  int virtual_lights = 1024;                // at most kMostVirtualLights
-  int virtual_light_candidates = 4;         // times as many to choose from; 1: as they come
-  std::optional<int> virtual_light_stride;  // each side takes every so many of them; none: automatic_stride()
-  static constexpr int kMostVirtualLights = 65536;
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 

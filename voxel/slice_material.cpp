@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "voxel/slice_internal.h"

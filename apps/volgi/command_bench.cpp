@@ -20,6 +20,7 @@
 #include "core/gl/context.h"
 #include "core/log.h"
 #include "core/scene_source.h"
+#include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/volume_cpu.h"
 #include "screen/frame/frame.h"
 
@@ -126,8 +127,9 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
   lit.grid_cells = largest_grid;
   VolumeCpu volume(atrium, lit);
   volume.voxelize();
-  volume.light_in();  // the sun's light, as the paper's figure has it
-  r["sparse_over_dense"] = bench_sparse(volume.voxels(), volume.flux().punctual, 16, frames);
+  // The sun's light, as the paper's figure has it.
+  const SideFlux sun = DirectLightCpu(atrium).flux(volume.voxels());
+  r["sparse_over_dense"] = bench_sparse(volume.voxels(), sun.punctual, 16, frames);
   if (json) return;
   fmt::print("{}", propagation_table(r));
   const auto& copy = r["conservative_over_copy"];

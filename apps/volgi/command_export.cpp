@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/progress.h"
+#include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/ordinates.h"
 #include "propagation/volume_cpu.h"
 #include "volgi_version.h"
@@ -118,7 +119,7 @@ int ExportCommand::run() const {
   if (has_radiance()) {
     computed.voxelize();
     progress.advance();
-    computed.light_in();
+    computed.light_in(DirectLightCpu(scene).flux(computed.voxels()));
     progress.advance();
     computed.propagate();
     progress.advance();

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/halton.h"
@@ -16,7 +15,6 @@
 #include "core/light_cone.h"
 #include "core/light_layers.h"
 #include "core/light_shares.h"
-#include "core/luminance.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -120,57 +118,12 @@ VirtualLightsCpu make_lights(const EmbreeScene& embree, const EmitterPoints& emi
   return list;
 }
 
-/// Flux that meets a surface again, to half a ray.
-double returning_flux(const EmbreeScene& embree, const VirtualLight& light, size_t index) {
-  const double flux = luminance(light.flux);
-  if (flux == 0.0) return 0.0;
-  constexpr float kFar = std::numeric_limits<float>::infinity();
-  const glm::vec3 origin = embree.leaving_point(light.position, -light.normal, kFar);
-  const glm::vec3 n = light.normal;
-  const glm::vec3 a = glm::normalize(glm::cross(n, std::abs(n.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
-  const glm::vec3 b = glm::cross(n, a);
-  int met = 0;
-  for (int k = 0; k < VirtualLightsCpu::kReturnRays; ++k) {
-    // An additive recurrence (Roberts 2018), even over the rays of one light and of all.
-    const auto sample = std::uint32_t(index) * std::uint32_t(VirtualLightsCpu::kReturnRays) + std::uint32_t(k);
-    const glm::vec2 u(float(3242174889u * sample >> 8) * 0x1p-24f, float(2447445414u * sample >> 8) * 0x1p-24f);
-    const float across = std::sqrt(u.x), angle = glm::two_pi<float>() * u.y;
-    const glm::vec3 direction = across * (std::cos(angle) * a + std::sin(angle) * b) + std::sqrt(1.0f - u.x) * n;
-    met += int(embree.occluded(origin, glm::normalize(direction), kFar, sample));
-  }
-  return flux * (met + 0.5) / (VirtualLightsCpu::kReturnRays + 0.5);
-}
-
 }  // namespace
 
-VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count) {
+VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
+                                    bool along_curve) {
   assert(count >= 1);
-  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count), false);
-}
-
-VirtualLightsCpu chosen_virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
-                                           int candidates) {
-  assert(count >= 1 && candidates >= 1);
-  const LightShares shares = share_by_power(embree.scene(), emitters.flux(), count * candidates);
-  const VirtualLightsCpu all = make_lights(embree, emitters, shares, true);
-  std::vector<double> weight(all.lights.size());
-  oneapi::tbb::parallel_for(size_t(0), weight.size(),
-                            [&](size_t i) { weight[i] = returning_flux(embree, all.lights[i], i); });
-  const double step = std::accumulate(weight.begin(), weight.end(), 0.0) / count;
-  VirtualLightsCpu chosen;
-  double reached = 0.0, next = 0.5 * step;
-  for (size_t i = 0; i < weight.size(); ++i) {
-    reached += weight[i];
-    for (; next < reached && int(chosen.lights.size()) < count; next += step) {
-      VirtualLight light = all.lights[i];
-      const auto share = float(step / weight[i]);
-      light.flux *= share;
-      light.area_m2 *= std::max(share, 1.0f);  // chosen more than once: together they stand where one stood
-      chosen.lights.push_back(light);
-      chosen.reflected += int(int(i) < all.reflected);
-    }
-  }
-  return chosen;
+  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count), along_curve);
 }
 
 }  // namespace volgi

@@ -11,7 +11,6 @@ namespace volgi {
 struct VirtualLightsCpu {
   std::vector<shared::VirtualLight> lights;
   int reflected = 0;
-  static constexpr int kReturnRays = 8;
   int emitted() const { return int(lights.size()) - reflected; }
 };
 
@@ -22,14 +21,9 @@ struct VirtualLightsCpu {
 /// light, in parallel; the result does not depend on threads.
 /// @param emitters  of embree.scene().
 /// @param count     of all sources together, shared by power (core/light_shares.h); at least 1.
-VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count);
-
-/// `count` of `candidates` times as many, chosen in proportion to the flux that meets a surface again: what a sun sends
-/// to the outside of a room is no light in it. That flux is known from kReturnRays cosine-distributed rays a candidate;
-/// none is ruled out, and what is chosen stands for the flux and area of what is not, so that sums keep their mean.
-/// Lights are in the order of a curve through what their source sends (core/hilbert.h), neighbours beside each other:
-/// every n-th of them is an even choice, too. Cost: 1 + kReturnRays rays a candidate, in parallel.
-VirtualLightsCpu chosen_virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
-                                           int candidates);
+/// @param along_curve  lights of a source in the order of a curve through what it sends (core/hilbert.h), neighbours
+///   beside each other, so that every n-th of them is an even choice; else in the order of Halton's points.
+VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
+                                    bool along_curve = false);
 
 }  // namespace volgi

@@ -82,7 +82,12 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
                   .wanted = wanted_,
                   .scene_diagonal_m = glm::distance(scene_.bounds_min, scene_.bounds_max)};
   std::vector<RadianceLayer> layers;  // of later stages before those of earlier ones: small light first
+  bool lights_ready = false;
   for (const Step& step : steps_) {
+    if (!lights_ready && step.plan.type->slot > Slot::lights) {
+      for (const Step& any : steps_) any.stage->lights_ready(frame, timer);
+      lights_ready = true;
+    }
     step.stage->run(frame, timer);
     check_layers(step.plan, frame.layers);
     layers.insert(layers.begin(), frame.layers.begin(), frame.layers.end());

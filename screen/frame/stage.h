@@ -50,6 +50,8 @@ struct StageContext {
 class Stage {
  public:
   virtual ~Stage() = default;
+  /// Stages of the slot `lights` have run, later ones have not: what takes long may begin (a copy to the host).
+  virtual void lights_ready(FrameData& /*frame*/, gl::PassTimer& /*timer*/) {}
   /// Takes and lends products, adds layers: of the paths and shares that its role names, fewer where there is no such
   /// light.
   virtual void run(FrameData& frame, gl::PassTimer& timer) = 0;

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "propagation/volume_cpu.h"
+#include "propagation/light_in/direct_light_cpu.h"
 #include "tests/support/volume_scenes.h"
 #include "voxel/vdb_file.h"
 
@@ -23,7 +23,7 @@ TEST(FlatVolume, IsExportedLikeAnyOther) {
       options.grid_cells = kCells;
       options.scheme.scheme = scheme;
       VolumeCpu volume(scene, options);
-      volume.run();
+      run_with_direct_light(volume, scene);
       const Grid& grid = volume.grid();
       EXPECT_EQ(grid.cells[axis], 1);
       EXPECT_EQ(cell_count(grid), size_t(kCells * kCells));

@@ -26,9 +26,10 @@ struct VolumeReport {
 class FrameVolume {
  public:
   virtual ~FrameVolume() = default;
-  /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce on the GPU starts from, else null; one
-  /// on
-  ///   the CPU finds its own.
+  /// Virtual lights are there, what is seen of them is not yet: a copy to the host may begin.
+  virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightParts* /*parts*/,
+                            gl::PassTimer& /*timer*/) {}
+  /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce starts from, else null.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
                    const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
   /// The scene has changed in place, its materials, textures and images apart: the next run meets it as a new volume

@@ -3,6 +3,7 @@
 #include "core/gl/program.h"
 #include "propagation/side_flux_gl.h"
 #include "screen/base/virtual_light_list_gl.h"
+#include "screen/lights/resample/virtual_light_parts.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -11,11 +12,14 @@ namespace volgi::screen {
 struct FirstBounce {
   const VirtualLightListGl& lights;
   const LightClusters& clusters;
+  const VirtualLightParts* parts;  // what lights those near it instead; null: nobody
+  float near_zone;                 // areas of a light; 0 without parts
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area
 /// light is: the source of bounces 2 ... n of punctual light and 1 ... n of emission (docs/theory.md#composition).
-/// Twin: propagation/side_gather.h, with rays. Cost: every light, and every area light's shadow, at every side.
+/// Twin: propagation/light_in/side_gather.h, with rays. Cost: every light, and every area light's shadow, at every
+/// side.
 class SideGatherGl {
  public:
   static constexpr const char* name = "screen/bounces/volume/side_gather";

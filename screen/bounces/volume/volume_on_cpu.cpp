@@ -1,5 +1,10 @@
 #include <openvdb/openvdb.h>
 
+#include <optional>
+
+#include "core/gl/readback.h"
+#include "propagation/light_in/direct_light_cpu.h"
+#include "propagation/light_in/side_gather.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"
@@ -11,17 +16,63 @@ namespace volgi::screen {
 
 namespace {
 
-/// The stages that come before pixels, each under a timer.
-void run_stages(VolumeCpu& volume, gl::PassTimer& timer) {
-  const auto stage = [&](const char* name, void (VolumeCpu::*run)()) {
+/// The stages that come before pixels, each under a timer. @param light  of the volume's sides, as SideFlux.
+template <class Light>
+void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const Light& light) {
+  const auto stage = [&](const char* name, const auto& run) {
     auto scope = timer.scope(name);
-    (volume.*run)();
+    run();
   };
-  stage("voxel/voxelize_cpu", &VolumeCpu::voxelize);
-  stage("propagation/light_in_cpu", &VolumeCpu::light_in);
-  stage("propagation/propagate_cpu", &VolumeCpu::propagate);
-  stage("propagation/side_irradiance_cpu", &VolumeCpu::irradiate);
+  stage("voxel/voxelize_cpu", [&] { volume.voxelize(); });
+  stage("propagation/light_in_cpu", [&] { volume.light_in(light(volume.voxels())); });
+  stage("propagation/propagate_cpu", [&] { volume.propagate(); });
+  stage("propagation/side_irradiance_cpu", [&] { volume.irradiate(); });
 }
+
+/// The picture's own virtual lights, and their parts, on the host: the copy is asked for as soon as they are there, and
+/// waited for when all that the GPU does for pixels is under way.
+class LightsOnHost {
+ public:
+  void begin(const VirtualLightListGl& lights, const VirtualLightParts* parts) {
+    copy(lights.buffer, size_t(lights.count()) * sizeof(shared::VirtualLight), lights_copy_);
+    if (parts != nullptr)
+      copy(parts->pieces(), size_t(lights.count()) * LIGHT_PIECES * sizeof(shared::LightPiece), pieces_copy_);
+  }
+  /// begin() comes first. @param near_zone  of the parts.
+  const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightParts* parts, float near_zone) {
+    const auto count = size_t(lights.count());
+    fetch(lights_copy_, count, host_.lights);
+    host_.reflected = lights.reflected;
+    host_.pieces.clear();
+    host_.near_zone = near_zone;
+    if (parts != nullptr) fetch(pieces_copy_, count * LIGHT_PIECES, host_.pieces);
+    return host_;
+  }
+  size_t bytes() const {
+    return host_.lights.capacity() * sizeof(shared::VirtualLight) +
+           host_.pieces.capacity() * sizeof(shared::LightPiece);
+  }
+
+ private:
+  struct Copy {
+    std::unique_ptr<gl::Readback> readback;
+    size_t bytes = 0;
+  };
+  static void copy(const gl::Buffer& from, size_t bytes, Copy& copy) {
+    if (bytes == 0) return;
+    if (copy.bytes != bytes) copy = {std::make_unique<gl::Readback>(bytes, 1), bytes};
+    copy.readback->drop_all();
+    copy.readback->push(from);
+  }
+  template <class T>
+  static void fetch(Copy& copy, size_t count, std::vector<T>& into) {
+    into.resize(count);
+    if (count > 0) copy.readback->pop(into.data());
+  }
+
+  VirtualLightsForSides host_;
+  Copy lights_copy_, pieces_copy_;
+};
 
 size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
 
@@ -45,15 +96,23 @@ VolumeReport report_of(const VolumeCpu& volume) {
   return r;
 }
 
-/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded, nothing is read back.
+/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded; after a first bounce on the screen
+/// its virtual lights are read back.
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : scene_(scene), options_(options), volume_(scene, options), gather_(size) {}
+      : scene_(scene), options_(options), volume_(scene, options), gather_(size) {
+    look_at_geometry();
+  }
+
+  void lights_ready(const VirtualLightListGl& lights, const VirtualLightParts* parts, gl::PassTimer& timer) override {
+    const auto scope = timer.scope("screen/bounces/volume/copy_lights");
+    lights_.begin(lights, parts);
+  }
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
-           const Camera& camera, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
-    run_stages(volume_, timer);
+           const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
+    run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       upload(volume_.voxels(), voxels_);
@@ -62,17 +121,37 @@ class SidesOnCpu : public FrameVolume {
     }
     gather_.run(gbuffer, camera, voxels_, direct_, indirect_, timer);
   }
-  bool follow_scene() override { return follow(scene_, options_, volume_); }
+  bool follow_scene() override {
+    if (!follow(scene_, options_, volume_)) return false;
+    look_at_geometry();
+    return true;
+  }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);
-    r.memory_bytes = volume_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() + gather_.bytes();
+    r.memory_bytes =
+        volume_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() + gather_.bytes();
     return r;
   }
 
  private:
+  bool after_first_bounce() const { return options_.source == VolumeOptions::Source::first_bounce; }
+  void look_at_geometry() {
+    if (after_first_bounce()) {
+      embree_.reset();
+      embree_ = std::make_unique<EmbreeScene>(scene_);
+    } else {
+      direct_light_.emplace(scene_);
+    }
+  }
+  SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
+    if (!after_first_bounce()) return direct_light_->flux(voxels);
+    const VirtualLightsForSides& lights =
+        lights_.end(first_bounce->lights, first_bounce->parts, first_bounce->near_zone);
+    return flux_after_first_bounce(voxels, *embree_, lights, options_.bounces.has_value());
+  }
   static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
     const size_t bytes = values.size() * sizeof(glm::vec4);
     if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(with_headroom(bytes));
@@ -82,6 +161,9 @@ class SidesOnCpu : public FrameVolume {
   const Scene& scene_;
   VolumeOptions options_;
   VolumeCpu volume_;
+  std::optional<DirectLightCpu> direct_light_;  // of Source::lights
+  std::unique_ptr<EmbreeScene> embree_;         // of Source::first_bounce
+  LightsOnHost lights_;
   VoxelGridGl voxels_;
   gl::Buffer direct_, indirect_;
   VolumeGather gather_;
@@ -112,13 +194,14 @@ class PulseOnCpu : public FrameVolume {
       : scene_(scene),
         options_(options),
         volume_(scene, options),
+        direct_light_(scene),
         radiance_(volume_.grid(), options.scheme.sh_order == 2 ? 9 : 4),
         normal_occupancy_(gl::Texture::make_3d(GL_RGBA32F, volume_.grid().cells)),
         gather_(size, options.scheme.sh_order) {}
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
-    run_stages(volume_, timer);
+    run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return direct_light_.flux(voxels); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       const RadianceVolume radiance = volume_.radiance();
@@ -130,7 +213,11 @@ class PulseOnCpu : public FrameVolume {
     const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
     gather_.run(gbuffer, voxels_, radiance_, occupied_only ? &normal_occupancy_ : nullptr, timer);
   }
-  bool follow_scene() override { return follow(scene_, options_, volume_); }
+  bool follow_scene() override {
+    if (!follow(scene_, options_, volume_)) return false;
+    direct_light_.scene_moved();
+    return true;
+  }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
 
@@ -145,6 +232,7 @@ class PulseOnCpu : public FrameVolume {
   const Scene& scene_;
   VolumeOptions options_;
   VolumeCpu volume_;
+  DirectLightCpu direct_light_;
   RadianceVolumeGl radiance_;
   gl::Texture normal_occupancy_;
   VoxelGridGl voxels_;

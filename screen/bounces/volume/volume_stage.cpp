@@ -6,7 +6,8 @@
 #include "core/log.h"
 #include "screen/bounces/volume/frame_volume.h"
 #include "screen/frame/plan.h"
-#include "screen/lights/rsm/virtual_lights.h"
+#include "screen/lights/resample/resample_stage.h"
+#include "screen/lights/resample/virtual_light_parts.h"
 
 namespace volgi::screen {
 
@@ -77,8 +78,10 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
                 "a first bounce on the screen, as --gi hybrid has it, needs a scheme that carries "
                 "orders: --scheme ordinates or conservative");
   bounce_rules(o, 0.5f);
-  return {.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
-          .adds = {{{punctual_higher, emission_first, emission_higher}}}};
+  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
+              .adds = {{{punctual_higher, emission_first, emission_higher}}}};
+  if (lights_have_parts(options)) r.needs.push_back(product<VirtualLightParts>());
+  return r;
 }
 
 FrameReport::Value rgb(glm::vec3 v) { return std::vector<double>{double(v.x), double(v.y), double(v.z)}; }
@@ -111,14 +114,19 @@ class VolumeStage : public Stage {
         on_gpu_(runs_on_gpu(context.options.backend)),
         after_first_bounce_(source == VolumeOptions::Source::first_bounce) {
     options_.source = source;
-    if (after_first_bounce_) options_.virtual_lights = context.options.of<VirtualLightOptions>().count;
+    if (lights_have_parts(context.options)) near_zone_ = context.options.of<ResampleOptions>().near_zone;
     make();
     warn_of_mixed_light(context);
   }
 
+  void lights_ready(FrameData& frame, gl::PassTimer& timer) override {
+    if (after_first_bounce_)
+      volume_->lights_ready(frame.get<VirtualLightListGl>(), frame.find<VirtualLightParts>(), timer);
+  }
   void run(FrameData& frame, gl::PassTimer& timer) override {
     if (after_first_bounce_) {
-      const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>()};
+      const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>(),
+                              frame.find<VirtualLightParts>(), near_zone_};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
       // What reaches surfaces from emission has been reflected before.
       frame.layers.push_back({&volume_->direct(), {emission_first}});
@@ -165,6 +173,7 @@ class VolumeStage : public Stage {
   glm::ivec2 size_;
   VolumeOptions options_;
   bool on_gpu_, after_first_bounce_;
+  float near_zone_ = 0.0f;
   std::unique_ptr<FrameVolume> volume_;
 };
 

@@ -11,7 +11,7 @@ namespace volgi::screen {
 /// virtual lights send to what is near them, from their pieces (VirtualLightParts). A disk's form factor is right only
 /// from afar: surfaces that meet a lit one got dark corners with bright spots, nearly all of the error that 1024 lights
 /// left. The share of a light that its quarters carry falls from 1 to 0 between `zone` and twice that, in squared
-/// distance over area (far_share() of shaders/screen/lights/resample/near_light.shared.h), and nearer by half the
+/// distance over area (far_share() of shaders/shared/near_light.shared.h), and nearer by half the
 /// quarters' parts follow by the same rule; the gather takes the rest, which is smooth. Nothing is taken to hide a
 /// light from what is so near: an area light's map, drawn from elsewhere, knows nothing of such ways. Tiles of 8 x 8
 /// pixels find their lights first, among those of 32 x 32; those without any are left out. Cost: lights for each 1024

@@ -1,6 +1,6 @@
 #include "screen/lights/resample/virtual_light_parts.h"
 
-#include "shaders/screen/lights/resample/near_light.shared.h"
+#include "shaders/shared/near_light.shared.h"
 
 namespace volgi::screen {
 

@@ -1,7 +1,8 @@
 #version 450 core
-// What every side reflects of the virtual lights: A rho E [W]. Lights come in the order of their area lights, so that
+// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their parts light it. Lights come in the order of their area lights, so that
 // each one's shadow is looked up once.
-#include "shared/disk_to_point.glsl"
+#define LIGHT_PIECES_BINDING 8
+#include "screen/lights/resample/light_parts.glsl"
 #include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
@@ -20,6 +21,7 @@ layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
 layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
+uniform float zone;  // areas of a light near which its pieces light instead; 0: none
 
 void main() {
   uint s = global_index();
@@ -37,14 +39,18 @@ void main() {
     if (cluster == NO_VIRTUAL_AREA_LIGHT) break;  // those come last
     VirtualLight l = lights[index];
     vec3 w = l.position - position;
+    float squared = dot(w, w);
     float cosines = max(dot(w, side.normal), 0.0) * max(-dot(w, l.normal), 0.0);
-    if (cosines <= 0.0) continue;
+    float share = far_share(disk_form(squared, l.area_m2), zone);
+    if (cosines <= 0.0 && share >= 1.0) continue;
     if (cluster != seen) {
       seen = cluster;
       visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
     }
-    float squared = dot(w, w);
-    vec3 irradiance = l.flux * disk_to_point(visibility * cosines, squared, l.area_m2);
+    vec3 irradiance = l.flux * disk_to_point(visibility * share * cosines, squared, l.area_m2);
+    if (share < 1.0)
+      irradiance += visibility * (1.0 - share) *
+                    irradiance_of_parts(Receiver(position, side.normal, side.normal), int(index), zone);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
   }

@@ -5,7 +5,7 @@
 // interleave 1, and LISTED (the pixels of a list), all of the lights, and the sum ends in radiance.
 #include "shared/disk_to_point.glsl"
 #include "screen/base/gbuffer.glsl"
-#include "screen/lights/resample/near_light.shared.h"
+#include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
 #include "shared/virtual_light.shared.h"

@@ -2,7 +2,7 @@
 #ifndef VOLGI_NEAR_LIGHTS_GLSL
 #define VOLGI_NEAR_LIGHTS_GLSL
 #include "screen/gather/interleaved/near_tiles.shared.h"
-#include "screen/lights/resample/near_light.shared.h"
+#include "shared/near_light.shared.h"
 #include "screen/base/work_list.glsl"
 
 layout(std430, binding = 1) buffer TileList { WorkListHead head; uint listed_tiles[]; };  // a group a tile, in no order

@@ -2,7 +2,7 @@
 // The parts and quarters of every virtual light of one source.
 #include "shared/global_index.shared.h"
 #include "shared/hilbert.shared.h"
-#include "screen/lights/resample/near_light.shared.h"
+#include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/lights/rsm/virtual_light_sample.glsl"
 

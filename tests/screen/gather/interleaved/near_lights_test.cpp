@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "screen/lights/resample/virtual_light_parts.h"
-#include "shaders/screen/lights/resample/near_light.shared.h"
+#include "shaders/shared/near_light.shared.h"
 #include "tests/screen/gathered.h"
 #include "tests/screen/virtual_light_scenes.h"
 #include "tests/support/frame_picture.h"

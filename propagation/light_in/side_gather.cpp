@@ -1,9 +1,11 @@
-#include "propagation/side_gather.h"
+#include "propagation/light_in/side_gather.h"
 
 #include <algorithm>
 #include <cassert>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
+#include "core/octahedral.h"
 #include "core/surface.h"
 #include "propagation/side_loops.h"
 
@@ -87,10 +89,17 @@ Start start_of(const VoxelGrid& voxels, const EmbreeScene& embree, const Side& s
   return {shared::world_from_cell(voxels.grid(), point), centre, {}};
 }
 
-/// @param end      of rays to the light: beside its surface.
-/// @param area_m2  that the light stands for here.
-glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start& start, const VirtualLight& light,
-                        glm::vec3 end, float area_m2, std::uint32_t seed) {
+/// A light or a piece of one, as a side sees it.
+struct Disk {
+  glm::vec3 position, normal, flux;
+  float area_m2;
+};
+
+constexpr float FAR = std::numeric_limits<float>::infinity();
+
+/// @param end  of rays to the light: beside its surface.
+glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start& start, const Disk& light,
+                        glm::vec3 end, std::uint32_t seed) {
   const glm::vec3 to_light = light.position - start.position;
   const float along_side = glm::dot(to_light, side.normal), along_light = -glm::dot(to_light, light.normal);
   const bool dark = light.flux == glm::vec3(0.0f);
@@ -102,7 +111,44 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
   }
   const float squared = glm::dot(to_light, to_light);
   const float cosines = along_side * along_light / squared;
-  return light.flux * (cosines / (glm::pi<float>() * squared + area_m2));
+  return light.flux * (cosines / (glm::pi<float>() * squared + light.area_m2));
+}
+
+glm::vec3 irradiance_of_piece(const EmbreeScene& embree, const Side& side, const Start& start,
+                              const shared::LightPiece& piece, std::uint32_t seed) {
+  const Disk disk{piece.position, octahedral_decode(piece.normal), piece.flux, piece.area_m2};
+  return irradiance_of(embree, side, start, disk, embree.leaving_point(disk.position, -disk.normal, FAR), seed);
+}
+
+/// Share of a disk's light at a point that comes from itself and not from what it consists of.
+float far_share_at(glm::vec3 point, glm::vec3 position, float area_m2, float zone) {
+  const glm::vec3 way = position - point;
+  const float squared = glm::dot(way, way);
+  return shared::far_share(squared / (glm::pi<float>() * squared + area_m2 + 1e-30f), zone);
+}
+
+/// Of a light's pieces: its quarters, and nearer by half the parts of those. As near_lights.comp.glsl has it.
+glm::vec3 irradiance_of_pieces(const EmbreeScene& embree, const Side& side, const Start& start,
+                               std::span<const shared::LightPiece> pieces, float zone, std::uint32_t seed) {
+  constexpr size_t PARTS_A_QUARTER = LIGHT_PARTS / LIGHT_QUARTERS;
+  glm::vec3 sum(0.0f);
+  for (size_t quarter = 0; quarter < LIGHT_QUARTERS; ++quarter) {
+    const shared::LightPiece& whole = pieces[quarter];
+    const float far = far_share_at(start.position, whole.position, whole.area_m2, zone);
+    if (far > 0.0f) sum += far * irradiance_of_piece(embree, side, start, whole, seed);
+    if (far >= 1.0f) continue;
+    for (size_t k = 0; k < PARTS_A_QUARTER; ++k) {
+      const shared::LightPiece& part = pieces[LIGHT_QUARTERS + quarter * PARTS_A_QUARTER + k];
+      sum += (1.0f - far) * irradiance_of_piece(embree, side, start, part, seed + std::uint32_t(k));
+    }
+  }
+  return sum;
+}
+
+/// What a light has itself and not its pieces.
+float share_of_light(const VirtualLightsForSides& from, size_t light, glm::vec3 point) {
+  if (from.pieces.empty()) return 1.0f;
+  return far_share_at(point, from.lights[light].position, from.lights[light].area_m2, from.near_zone);
 }
 
 }  // namespace
@@ -114,24 +160,34 @@ int automatic_stride(size_t sides, size_t lights) {
 }
 
 std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
-                                   std::span<const VirtualLight> lights, int stride) {
-  assert(stride >= 1);
-  std::vector<glm::vec3> ends(lights.size());
-  for (size_t i = 0; i < lights.size(); ++i) {
-    ends[i] = embree.leaving_point(lights[i].position, -lights[i].normal, std::numeric_limits<float>::infinity());
-  }
+                                   const VirtualLightsForSides& from, size_t first, size_t end, int stride) {
+  assert(stride >= 1 && end <= from.lights.size());
+  assert(from.pieces.empty() || from.pieces.size() >= from.lights.size() * LIGHT_PIECES);
+  std::vector<glm::vec3> ends(from.lights.size());
+  for (size_t i = first; i < end; ++i)
+    ends[i] = embree.leaving_point(from.lights[i].position, -from.lights[i].normal, FAR);
   std::vector<glm::vec4> irradiance(voxels.side_count());
   for_each_side(irradiance.size(), [&](size_t i) {
     const Side& side = voxels.sides()[i];
     const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
     const Start start = start_of(voxels, embree, side);
-    glm::vec3 sum(0.0f);
-    for (auto k = size_t(first_light_of_side(cell, side.face, stride)); k < lights.size(); k += size_t(stride)) {
-      const std::uint32_t seed = std::uint32_t(i) * 2654435769u + std::uint32_t(k);
-      const float area_m2 = std::min(float(stride) * lights[k].area_m2, lights[k].area_m2 + side.area_m2);
-      sum += irradiance_of(embree, side, start, lights[k], ends[k], area_m2, seed);
+    const auto seed_of = [&](size_t k) { return std::uint32_t(i) * 2654435769u + std::uint32_t(k); };
+    glm::vec3 far(0.0f), near(0.0f);
+    for (auto k = first + size_t(first_light_of_side(cell, side.face, stride)); k < end; k += size_t(stride)) {
+      const VirtualLight& light = from.lights[k];
+      const float share = share_of_light(from, k, start.position);
+      if (share <= 0.0f) continue;
+      const float area_m2 = std::min(float(stride) * light.area_m2, light.area_m2 + side.area_m2);
+      far += share * irradiance_of(embree, side, start, {light.position, light.normal, light.flux, area_m2}, ends[k],
+                                   seed_of(k));
     }
-    irradiance[i] = glm::vec4(sum * float(stride), 0.0f);
+    for (size_t k = first; k < end && !from.pieces.empty(); ++k) {
+      const float share = 1.0f - share_of_light(from, k, start.position);
+      if (share <= 0.0f) continue;
+      const std::span<const shared::LightPiece> pieces(&from.pieces[k * LIGHT_PIECES], LIGHT_PIECES);
+      near += share * irradiance_of_pieces(embree, side, start, pieces, from.near_zone, seed_of(k));
+    }
+    irradiance[i] = glm::vec4(far * float(stride) + near, 0.0f);
   });
   return irradiance;
 }
@@ -143,6 +199,21 @@ std::vector<glm::vec4> reflected_flux(const VoxelGrid& voxels, std::span<const g
     const Side& side = voxels.sides()[i];
     flux[i] = glm::vec4(glm::vec3(irradiance[i]) * side.albedo * side.area_m2, 0.0f);
   });
+  return flux;
+}
+
+SideFlux flux_after_first_bounce(const VoxelGrid& voxels, const EmbreeScene& embree, const VirtualLightsForSides& from,
+                                 bool emission_apart, std::optional<int> stride) {
+  const size_t all = from.lights.size(), reflected = emission_apart ? size_t(from.reflected) : all;
+  const int step = stride.value_or(automatic_stride(voxels.side_count(), all));
+  const auto brought_by = [&](size_t first, size_t end) {
+    return reflected_flux(voxels, side_gather(voxels, embree, from, first, end, step));
+  };
+  SideFlux flux;
+  flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+  flux.punctual = brought_by(0, reflected);
+  flux.emits = reflected < all;
+  if (flux.emits) flux.emitted = brought_by(reflected, all);
   return flux;
 }
 

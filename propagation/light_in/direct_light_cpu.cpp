@@ -1,0 +1,50 @@
+#include "propagation/light_in/direct_light_cpu.h"
+
+#include <algorithm>
+
+#include "core/visibility/light_flux.h"
+#include "voxel/emitter_pieces.h"
+
+namespace volgi {
+
+namespace {
+
+// Rays of a spot's layer through one cell's edge where the layer sees the grid across its edge (a sun's has twice as
+// many): a lit cell gets some 16 samples or more. All power is known beforehand; what few rays get wrong is where edges
+// of albedo lie: 1e-4 of the light of cornell, room and thin_wall at 512, 3e-4 at 256, against 2048.
+constexpr int kRaysACellEdge = 4;
+constexpr int kLeastRays = 512;
+constexpr int kMostRays = 1024;
+
+int light_texels(const Grid& grid) {
+  return std::clamp(kRaysACellEdge * std::max({grid.cells.x, grid.cells.y, grid.cells.z}), kLeastRays, kMostRays);
+}
+
+}  // namespace
+
+DirectLightCpu::DirectLightCpu(const Scene& scene) : scene_(scene) { scene_moved(); }
+
+void DirectLightCpu::scene_moved() {
+  embree_.reset();
+  if (!scene_.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene_);
+}
+
+SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
+  SideFlux flux;
+  flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+  flux.punctual = flux.emitted;
+  const std::vector<FluxSample> pieces = emitter_pieces(scene_, voxels.grid());
+  flux.emits = !pieces.empty();
+  deposit(voxels, pieces, flux.emitted, flux.lost);
+  if (embree_) deposit(voxels, light_flux(*embree_, light_texels(voxels.grid())), flux.punctual, flux.lost);
+  return flux;
+}
+
+void run_with_direct_light(VolumeCpu& volume, const Scene& scene) {
+  volume.voxelize();
+  volume.light_in(DirectLightCpu(scene).flux(volume.voxels()));
+  volume.propagate();
+  volume.irradiate();
+}
+
+}  // namespace volgi

@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+
+#include "core/scene.h"
+#include "core/visibility/embree_scene.h"
+#include "propagation/side_flux.h"
+#include "propagation/volume_cpu.h"
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+/// What lamps and emissive surfaces give a volume on the CPU: the flux that they send and that surfaces under them
+/// reflect, by Embree rays through the texels of what a reflective shadow map would be. Twins:
+/// propagation/side_flux_gl.h and screen/bounces/volume/inject_reflective_shadow_map.h.
+class DirectLightCpu {
+ public:
+  /// @param scene  must outlive this.
+  explicit DirectLightCpu(const Scene& scene);
+  /// The scene has moved, in place. Cost: Embree's tree on one thread, 1 ms for some 2000 triangles.
+  void scene_moved();
+  /// Cost: some 16 rays for each lit cell's face.
+  SideFlux flux(const VoxelGrid& voxels) const;
+
+ private:
+  const Scene& scene_;
+  std::unique_ptr<EmbreeScene> embree_;  // none without punctual lights
+};
+
+/// All of a volume: voxels, direct light, propagation, irradiance.
+void run_with_direct_light(VolumeCpu& volume, const Scene& scene);
+
+}  // namespace volgi
