@@ -1,5 +1,7 @@
 #include "apps/volgi/frame_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "apps/volgi/parameter.h"
 #include "core/error.h"
 

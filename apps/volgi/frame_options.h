@@ -1,10 +1,13 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "apps/volgi/volume_options.h"
 #include "screen/frame/frame.h"
+
+namespace CLI {
+class App;
+}
 
 namespace volgi::app {
 

@@ -1,5 +1,6 @@
 #include "apps/volgi/scene_options.h"
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cmath>
