@@ -8,7 +8,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 find_program(VOLGI_CCACHE ccache)
 if(VOLGI_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${VOLGI_CCACHE})
+  # The sloppiness that precompiled headers need (ccache's manual, "Precompiled headers").
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
+    CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime ${VOLGI_CCACHE})
 endif()
 
 add_library(volgi_options INTERFACE)
@@ -26,6 +28,39 @@ if(VOLGI_SANITIZE)
 endif()
 target_compile_definitions(volgi_options INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_ENABLE_EXPERIMENTAL)
 
+# Precompiled headers: what nearly every file reads, once for each kind of target, since a kind's flags have to be the same.
+# Sources with options of their own are compiled without. CMAKE_DISABLE_PRECOMPILE_HEADERS turns them off (preset tidy:
+# clang cannot read GCC's), and every file has to compile without them all the same.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fpch-preprocess>)  # for ccache
+endif()
+set(VOLGI_COMMON_HEADERS <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <span>
+  <string> <string_view> <utility> <vector> <fmt/format.h> <glm/glm.hpp> <glm/gtc/constants.hpp>)
+file(CONFIGURE OUTPUT precompiled.cpp CONTENT "// Precompiled headers need a source.\n")
+# volgi_precompiled(NAME HEADERS... LIBS...): target NAME, for volgi_use_precompiled.
+function(volgi_precompiled name)
+  cmake_parse_arguments(P "" "" "HEADERS;LIBS" ${ARGN})
+  add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/precompiled.cpp)
+  target_link_libraries(${name} PRIVATE volgi_options ${P_LIBS})
+  target_precompile_headers(${name} PRIVATE ${VOLGI_COMMON_HEADERS} ${P_HEADERS})
+endfunction()
+# volgi_use_precompiled_later(TARGET NAME): at the folder's end, when sources have their options.
+function(volgi_use_precompiled_later target name)
+  cmake_language(EVAL CODE "cmake_language(DEFER CALL volgi_use_precompiled ${target} ${name})")
+endfunction()
+function(volgi_use_precompiled target name)
+  target_precompile_headers(${target} REUSE_FROM ${name})
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    get_source_file_property(own_options ${source} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
+    if(own_options)
+      set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+    endif()
+  endforeach()
+endfunction()
+
+volgi_precompiled(volgi_room_precompiled LIBS glm::glm fmt::fmt)
+
 # volgi_room(NAME SOURCES... PUBLIC libs... PRIVATE libs...): static library volgi_NAME, alias volgi::NAME.
 function(volgi_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -35,6 +70,7 @@ function(volgi_room name)
   target_include_directories(volgi_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/volgi>)
   target_link_libraries(volgi_${name} PUBLIC volgi_options ${ROOM_PUBLIC} PRIVATE ${ROOM_PRIVATE})
+  volgi_use_precompiled_later(volgi_${name} volgi_room_precompiled)
   set_property(GLOBAL APPEND PROPERTY VOLGI_TARGETS volgi_${name})
 endfunction()
 
@@ -47,6 +83,9 @@ function(volgi_test name)
   endif()
   add_executable(test_${name} ${T_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${T_LIBS} test_paths GTest::gtest GTest::gtest_main)
+  # No -fPIC or -fPIE of CMake's: the flags of the precompiled headers, a library's, would not be the same.
+  set_target_properties(test_${name} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  volgi_use_precompiled_later(test_${name} volgi_test_precompiled)
   if(NOT T_LABELS)
     set(T_LABELS cpu)
   endif()

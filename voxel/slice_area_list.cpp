@@ -1,6 +1,6 @@
-#include "voxel/slice_area_list.h"
+#include "voxel/slice_area_list_internal.h"
 
-#include "voxel/slice_blocks.h"
+#include "voxel/slice_blocks_internal.h"
 
 namespace volgi::slicing {
 

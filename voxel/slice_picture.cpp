@@ -141,7 +141,7 @@ class ColorScale {
 // stb_easy_font's characters are ASCII from space to ~; a file can name a grid as it likes.
 std::string drawable(std::string text) {
   constexpr size_t longest = 96;
-  if (text.size() > longest) text = text.substr(0, longest - 3) + "...";
+  if (text.size() > longest) text.replace(longest - 3, std::string::npos, "...");
   for (char& c : text)
     if (c < ' ' || c > '~') c = '?';
   return text;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -13,9 +14,9 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/log.h"
-#include "core/visibility/openness.h"
 #include "core/scene.h"
 #include "core/virtual_light_list.h"
+#include "core/visibility/openness.h"
 #include "reference/path_tracer.h"
 #include "reference/virtual_light_tracer.h"
 

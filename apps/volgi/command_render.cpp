@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <fstream>
@@ -45,12 +46,12 @@ struct RenderCommand {
  private:
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
-  void render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const;
-  void render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving, const FrameTimes& times,
-                        const WorldBox& box, gl::PassTimer& timer) const;
+  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const;
+  TimedFrames render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
+                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const;
   void write_picture(const screen::Frame& picture, const std::filesystem::path& path) const;
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
-                         const gl::Context& context, gl::PassTimer& timer, int times) const;
+                         const gl::Context& context, gl::PassTimer& timer, const TimedFrames& frames) const;
 };
 
 void warn_of_bad_pixels(const Image& picture) {
@@ -98,22 +99,27 @@ void RenderCommand::write_picture(const screen::Frame& picture, const std::files
 }
 
 /// The same picture, as often as asked for, for its times.
-void RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const {
+TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const {
   const Camera camera = scene.camera(loaded);
-  // Two warm-up frames where times of several are wanted; one frame is shown with what it took from cold.
+  // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a
+  // cold frame's, and said to be.
   const int warm_up = frames > 1 ? 2 : 0;
+  TimedFrames timed{frames, frames > 1, {}};
   for (int f = 0; f < warm_up + frames; ++f) {
     if (f == warm_up) timer.reset();
     timer.begin_frame();
     picture.render(camera, timer);
     timer.end_frame();
+    if (f == 0) timed.cold = cold_frame(timer);
   }
   write_picture(picture, out);
+  return timed;
 }
 
 /// Each picture is written, whole, before the next one begins.
-void RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                                     const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const {
+TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
+                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const {
+  TimedFrames timed{1, false, {}};
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
     timer.begin_frame();
@@ -124,15 +130,21 @@ void RenderCommand::render_animation(screen::Frame& picture, const SceneSource& 
     picture.follow_scene(timer);
     picture.render(scene.camera(moving), timer);
     timer.end_frame();
+    if (k == 0) timed.cold = cold_frame(timer);
     write_picture(picture, frame_path(out, k));
     progress.advance();
+    if (k == 0 && times.count > 1) {
+      timer.reset();
+      timed = {times.count - 1, true, timed.cold};
+    }
   }
+  return timed;
 }
 
 nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen::FrameOptions& options,
                                       const Scene& loaded, const gl::Context& context, gl::PassTimer& timer,
-                                      int times) const {
-  auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, times, picture.report());
+                                      const TimedFrames& frames) const {
+  auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, frames, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},
@@ -162,12 +174,9 @@ int RenderCommand::run() const {
   }
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
-  if (animate.empty()) {
-    render_still(picture, loaded, timer);
-  } else {
-    render_animation(picture, source, loaded, times, box, timer);
-  }
-  const auto figures = numbers(picture, options, loaded, context, timer, animate.empty() ? frames : times.count);
+  const TimedFrames timed_frames = animate.empty() ? render_still(picture, loaded, timer)
+                                                   : render_animation(picture, source, loaded, times, box, timer);
+  const auto figures = numbers(picture, options, loaded, context, timer, timed_frames);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
   }
@@ -200,7 +209,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
           ->excludes(command->get_option("--time"));
   command
       ->add_option("--frames", options->frames,
-                   "render the same picture this often (after two warm-up frames) for times")
+                   "render the same picture this often for times; more than 1: after two warm-up frames")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->excludes(animate);

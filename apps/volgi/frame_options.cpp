@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "screen/frame/registry.h"
 
 namespace volgi::app {

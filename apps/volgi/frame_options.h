@@ -1,11 +1,14 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "apps/volgi/volume_options.h"
 #include "screen/frame/frame_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace volgi::app {
 

@@ -30,14 +30,30 @@ void set_figure(nlohmann::json& stats, const screen::FrameReport::Figure& figure
   std::visit([&](const auto& value) { stats[nlohmann::json::json_pointer(pointer)] = json_of(value); }, figure.value);
 }
 
+nlohmann::json to_json(const std::vector<gl::PassTimer::PassTime>& passes) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const auto& pass : passes)
+    out.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
+  return out;
+}
+
+std::string frame_line(const nlohmann::json& stats, double sum_of_passes) {
+  const double cold_ms = stats["cold"]["frame_ms"];
+  if (!stats["warm"].get<bool>()) {
+    return fmt::format("  {:<56} {:9.2f} ms  (the first, shader compilation in it; --frames 3 times warm ones)\n",
+                       "frame, cold", cold_ms);
+  }
+  return fmt::format("  {:<56} {:9.2f} ms  (median of {}; sum of passes {:.2f}; cold {:.2f})\n", "frame",
+                     stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum_of_passes, cold_ms);
+}
+
 }  // namespace
 
+ColdFrame cold_frame(gl::PassTimer& timer) { return {timer.frame_time().median_ms, timer.medians()}; }
+
 nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size,
-                           const gl::Context& context, gl::PassTimer& timer, int frames,
+                           const gl::Context& context, gl::PassTimer& timer, const TimedFrames& frames,
                            const screen::FrameReport& report) {
-  nlohmann::json passes = nlohmann::json::array();
-  for (const auto& pass : timer.medians())
-    passes.push_back({{"name", pass.name}, {"gpu_ms", pass.gpu_ms}, {"cpu_ms", pass.cpu_ms}});
   auto frame = timer.frame_time();
   nlohmann::json stats = {
       {"scene", scene},
@@ -46,9 +62,11 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
       {"device", context.device_name()},
       {"gl_version", context.version()},
       {"timer", timer.kind() == gl::PassTimer::Kind::gpu ? "gpu" : "wall"},
-      {"frames", frames},
+      {"frames", frames.count},
       {"frame_ms", {{"min", frame.min_ms}, {"median", frame.median_ms}, {"max", frame.max_ms}}},
-      {"passes", passes},
+      {"passes", to_json(timer.medians())},
+      {"warm", frames.warm},
+      {"cold", {{"frame_ms", frames.cold.frame_ms}, {"passes", to_json(frames.cold.passes)}}},
       {"memory_bytes", report.memory_bytes},
   };
   screen::FrameReport nothing;
@@ -73,8 +91,7 @@ std::string pass_table(const nlohmann::json& stats) {
     sum += ms;
     text += fmt::format("  {:<56} {:9.2f} ms\n", pass["name"].get<std::string>(), ms);
   }
-  text += fmt::format("  {:<56} {:9.2f} ms  (median of {}; sum of passes {:.2f})\n", "frame",
-                      stats["frame_ms"]["median"].get<double>(), stats["frames"].get<int>(), sum);
+  text += frame_line(stats, sum);
   return text + fmt::format("  {}\n", stats["summary"].get<std::string>());
 }
 

@@ -1,6 +1,7 @@
 #include "apps/volgi/scene_options.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>

@@ -1,5 +1,4 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
@@ -8,6 +7,10 @@
 
 #include "core/camera.h"
 #include "core/scene.h"
+
+namespace CLI {
+class App;
+}
 
 namespace volgi::app {
 

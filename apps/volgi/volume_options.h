@@ -1,10 +1,13 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "propagation/volume_options.h"
+
+namespace CLI {
+class App;
+}
 
 namespace volgi::app {
 

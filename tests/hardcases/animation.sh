@@ -22,7 +22,7 @@ for backend in gpu cpu; do
       must "$volgi" render "${options[@]}" -o alone.exr --time "${times[k]}" --quiet
       cmp alone.exr "out.000$k.exr" || fail "--gi $gi --backend $backend: frame $k is not the picture of its time"
     done
-    for pass in core/move_scene screen/frame/follow_scene '"frames": 3' '"animate": "1:2:2"'; do
+    for pass in core/move_scene screen/frame/follow_scene '"frames": 2' '"warm": true' '"cold"' '"animate": "1:2:2"'; do
       grep -qF -- "$pass" stats.json || fail "no $pass in --stats"
     done
     [[ $(echo out.*) == "out.0000.exr out.0001.exr out.0002.exr" ]] || fail "frames: $(echo out.*)"

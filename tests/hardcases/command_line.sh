@@ -92,5 +92,20 @@ if [[ -n $gl ]]; then
   done
 fi
 
+# Times are a warm frame's, or said to be the cold one's.
+if [[ -n $gl ]]; then
+  must "$volgi" render "$scene" -o "$logs/frame.exr" --size 8x8 --grid 8 --frames 2 --stats "$logs/warm.json"
+  grep -q '^  frame  .*(median of 2; .*; cold ' "$logs/out" || fail "--frames 2: no cold frame apart: $(< "$logs/out")"
+  must "$volgi" render "$scene" -o "$logs/frame.exr" --size 8x8 --grid 8 --stats "$logs/cold.json"
+  grep -q '^  frame, cold ' "$logs/out" || fail "one frame is not said to be cold: $(< "$logs/out")"
+  must python3 - "$logs/warm.json" "$logs/cold.json" << 'EOF'
+import json, sys
+warm, cold = (json.load(open(path)) for path in sys.argv[1:])
+assert warm["warm"] and warm["frames"] == 2 and warm["frame_ms"]["max"] < warm["cold"]["frame_ms"], warm
+assert not cold["warm"] and cold["frames"] == 1, cold
+assert cold["frame_ms"]["median"] == cold["cold"]["frame_ms"] and cold["passes"] == cold["cold"]["passes"], cold
+EOF
+fi
+
 ((failures == 0)) || printf '%d commands did not fail as they should\n' "$failures"
 exit $((failures > 0))

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "voxel/slice_raster.h"
+#include "voxel/slice_raster_internal.h"
 
 namespace volgi::slicing {
 
