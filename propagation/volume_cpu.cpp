@@ -1,5 +1,7 @@
 #include "propagation/volume_cpu.h"
 
+#include <openvdb/openvdb.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>

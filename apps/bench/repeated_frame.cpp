@@ -32,6 +32,8 @@ void RepeatedFrame::render() {
     timer_.end_frame();
     glFinish();
   }));
+  if (!rendered_) cold_ = cold_frame(timer_);
+  rendered_ = true;
 }
 
 void RepeatedFrame::render_repeatedly(int frames) { render_in_turn({this}, frames); }

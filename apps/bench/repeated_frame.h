@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/volgi/frame_stats.h"
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
 #include "core/image.h"
@@ -28,6 +29,7 @@ class RepeatedFrame {
   /// render(), so many times after kWarmUp that do not count.
   void render_repeatedly(int frames);
   void forget_warm_up();
+  const ColdFrame& cold() const { return cold_; }  // the first one
 
   Image image() const;
   const screen::Frame& frame() const { return frame_; }
@@ -42,6 +44,8 @@ class RepeatedFrame {
   screen::Frame frame_;
   gl::PassTimer timer_;
   std::vector<double> frames_ms_;
+  ColdFrame cold_;
+  bool rendered_ = false;
 };
 
 /// Frames of several pictures in turn, so that what else the machine does meets all alike; warm-up as above.

@@ -78,8 +78,8 @@ nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme,
   if (scheme == Scheme::conservative) options.of<VolumeOptions>().iterations = iterations;
   RepeatedFrame picture(scene, context, options);
   picture.render_repeatedly(frames);
-  auto stats =
-      frame_stats(scene.name, "volume", options.size, context, picture.timer(), frames, picture.frame().report());
+  auto stats = frame_stats(scene.name, options.recipe, options.size, context, picture.timer(),
+                           {frames, true, picture.cold()}, picture.frame().report());
   for (const auto& pass : stats["passes"]) {
     if (pass["name"] == "propagation/propagate")
       stats["iteration_ms"] = pass["gpu_ms"].get<double>() / stats["iterations"].get<double>();

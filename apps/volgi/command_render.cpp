@@ -51,7 +51,7 @@ struct RenderCommand {
                                const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const;
   void write_picture(const screen::Frame& picture, const std::filesystem::path& path) const;
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
-                         const gl::Context& context, gl::PassTimer& timer, const TimedFrames& frames) const;
+                         const gl::Context& context, gl::PassTimer& timer, const TimedFrames& timed) const;
 };
 
 void warn_of_bad_pixels(const Image& picture) {
@@ -143,8 +143,8 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
 
 nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen::FrameOptions& options,
                                       const Scene& loaded, const gl::Context& context, gl::PassTimer& timer,
-                                      const TimedFrames& frames) const {
-  auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, frames, picture.report());
+                                      const TimedFrames& timed) const {
+  auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, timed, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
                            {"grid", frame.volume.grid_cells},

@@ -177,7 +177,9 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
       const VirtualLight& light = from.lights[k];
       const float share = share_of_light(from, k, start.position);
       if (share <= 0.0f) continue;
-      const float area_m2 = std::min(float(stride) * light.area_m2, light.area_m2 + side.area_m2);
+      // Peaks near a light are its parts' part.
+      const float spread_m2 = from.pieces.empty() ? std::min(float(stride - 1) * light.area_m2, side.area_m2) : 0.0f;
+      const float area_m2 = light.area_m2 + spread_m2;
       far += share * irradiance_of(embree, side, start, {light.position, light.normal, light.flux, area_m2}, ends[k],
                                    seed_of(k));
     }

@@ -1,5 +1,7 @@
 #include "propagation/lobes/sh_lobes_walls.h"
 
+#include <openvdb/tree/Tree.h>
+
 #include <algorithm>
 
 #include "shaders/shared/grid.shared.h"

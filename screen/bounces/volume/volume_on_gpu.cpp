@@ -165,6 +165,8 @@ class PulseOnGpu : public FrameVolume {
   BounceReport bounce_report_;
 };
 
+}  // namespace
+
 size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
   const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
   const SchemeOptions& scheme = options.scheme;
@@ -185,8 +187,6 @@ size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm
   return bytes + transport + BouncesGl::bytes_for(capacity, rules, linear) + SideIrradianceGl::bytes_for(capacity) +
          VolumeGather::bytes_for(size);
 }
-
-}  // namespace
 
 size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu, glm::ivec2 size) {
   return on_gpu ? volume_bytes_on_gpu(scene, options, size) : volume_bytes_on_cpu(scene, options, size);
