@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
       "Exit codes: 0 done; 1 a comparison exceeded its limit; 2 wrong usage; 3 bad input file; 4 no usable GPU or "
-      "context;\n"
+      "context, or an OpenGL error;\n"
       "            5 out of memory or over a limit; 6 could not write the output.\nEach command: volgi COMMAND --help");
 #ifdef VOLGI_HAS_GL
   app::add_render_command(app, exit_code);

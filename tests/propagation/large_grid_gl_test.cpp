@@ -17,12 +17,13 @@ TEST_F(LargeGrid, LastCellReceivesWhatItSends) {
     other[axis] -= 1;
     return c == cells - 1 || other == cells - 1 ? 1.0f : 0.0f;
   });
-  ASSERT_EQ(voxels.sides.size(), 9u) << "six inside, three outside";
+  ASSERT_EQ(voxels.sides().size(), 9u) << "six inside, three outside";
   const VoxelGridGl gpu = upload(voxels);
-  OrdinatesTransportGl transport(voxels.grid, 8, Ordinates::step);
+  OrdinatesTransportGl transport(voxels.grid(), 8, Ordinates::step);
   Powers sent(gpu.side_capacity, glm::vec4(0.0f));
-  for (size_t i = 0; i < voxels.sides.size(); ++i) {
-    if (shared::cell_coord(voxels.grid, voxels.sides[i].cell) == cells - 1) sent[i] = glm::vec4(1.0f, 2.0f, 3.0f, 0.0f);
+  for (size_t i = 0; i < voxels.sides().size(); ++i) {
+    if (shared::cell_coord(voxels.grid(), voxels.sides()[i].cell) == cells - 1)
+      sent[i] = glm::vec4(1.0f, 2.0f, 3.0f, 0.0f);
   }
   const gl::Buffer from(sent), to(sent.size() * sizeof(glm::vec4));
   to.clear();
