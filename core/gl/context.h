@@ -7,7 +7,7 @@ namespace volgi::gl {
 
 struct ContextOptions {
   std::optional<int> device = {};  // as EGL numbers them; none: VOLGI_DEVICE, else the first of hardware, else software
-  bool debug = false;         // GL says what is wrong where it is wrong; slower on some drivers
+  bool debug = false;              // GL says what is wrong where it is wrong; slower on some drivers
 };
 
 /// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL: device platform for
