@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <map>
 
+#include "apps/bench/budget.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/yardstick.h"
 #include "core/gl/limits.h"
@@ -22,40 +22,6 @@ namespace volgi::app {
 namespace {
 
 using Json = nlohmann::json;
-using Clock = std::chrono::steady_clock;
-
-/// Time that parts of the benchmark may take, each until a share of the whole is over.
-class Budget {
- public:
-  Budget(double seconds, Json& skipped) : seconds_(seconds), skipped_(skipped) {}
-
-  void begin_part(const char* part, double until_share) {
-    part_ = part;
-    end_s_ = until_share * seconds_;
-    s_per_work_ = 0.0;
-  }
-  /// Whether a picture of so much work, in a measure of the part's own, can be had in time: a cold frame and a warm
-  /// one, by the slowest so far. What cannot is noted down.
-  bool allows(const std::string& what, double work) const {
-    const double estimate_s = 2.0 * s_per_work_ * work;
-    if (estimate_s <= left_s()) return true;
-    skipped_.push_back({{"part", part_}, {"what", what}, {"estimate_s", estimate_s}, {"left_s", left_s()}});
-    return false;
-  }
-  void took(double frame_s, double work) { s_per_work_ = std::max(s_per_work_, frame_s / work); }
-  /// Frames to measure: those that are wanted, with one more to warm up, or 1.
-  int frames(double frame_s, int wanted) const { return frame_s * (wanted + 1) <= left_s() ? wanted : 1; }
-  double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  double left_s() const { return std::max(0.0, end_s_ - elapsed_s()); }
-
-  Clock::time_point start_ = Clock::now();
-  double seconds_;
-  Json& skipped_;
-  std::string part_;
-  double end_s_ = 0.0, s_per_work_ = 0.0;
-};
 
 struct Bench {
   const gl::Context& context;
@@ -63,7 +29,7 @@ struct Bench {
   Budget& budget;
 
   /// The frame as often as the budget allows. @return frames measured.
-  int measure(RepeatedFrame& picture, double work) const {
+  int measure(const Scene& scene, RepeatedFrame& picture, double work) const {
     picture.render();  // cold
     const double cold_s = 1e-3 * picture.frame_ms();
     picture.forget_warm_up();
@@ -73,7 +39,7 @@ struct Bench {
       picture.forget_warm_up();
     }
     for (int f = 0; f < frames; ++f) picture.render();
-    budget.took(1e-3 * picture.frame_ms(), work);
+    budget.took(scene.name, 1e-3 * picture.frame_ms(), work);
     return frames;
   }
 };
@@ -160,9 +126,9 @@ void bench_error(const Bench& bench, const Scene& scene, Json& rows) {
   const Yardstick yardstick(std::move(reference), file.string());
   for (const Setting& setting : kSettings) {
     if (bench.options.quick && !setting.quick) continue;
-    if (!bench.budget.allows(scene.name + " " + setting.options, 1.0)) continue;
+    if (!bench.budget.allows(scene.name, setting.options, 1.0)) continue;
     RepeatedFrame picture(scene, bench.context, frame_options(setting, size));
-    const int frames = bench.measure(picture, 1.0);
+    const int frames = bench.measure(scene, picture, 1.0);
     const Image image = picture.image();
     rows.push_back({{"scene", scene.name},
                     {"options", setting.options},
@@ -220,9 +186,9 @@ void bench_volume(const Bench& bench, const Scene& scene, int cells, double copy
   screen::FrameOptions options = on_gpu("volume", glm::ivec2(64));
   options.of<VolumeOptions>().grid_cells = cells;
   const double work = double(cells) * cells * cells;
-  if (!bench.budget.allows(fmt::format("{} at {} cells", scene.name, cells), work)) return;
+  if (!bench.budget.allows(scene.name, fmt::format("at {} cells", cells), work)) return;
   RepeatedFrame picture(scene, bench.context, options);
-  const int frames = bench.measure(picture, work);
+  const int frames = bench.measure(scene, picture, work);
   const screen::VolumeReport report = picture.frame().report().of<screen::VolumeReport>();
 
   const Sweep sweep = time_sweep(bench.context, scene, cells, frames);
@@ -251,10 +217,10 @@ void bench_volume(const Bench& bench, const Scene& scene, int cells, double copy
 
 void bench_passes(const Bench& bench, const Scene& scene, glm::ivec2 size, Json& rows) {
   const double work = double(size.x) * size.y;
-  if (!bench.budget.allows(fmt::format("{} at {} x {}", scene.name, size.x, size.y), work)) return;
+  if (!bench.budget.allows(scene.name, fmt::format("at {} x {}", size.x, size.y), work)) return;
   const screen::FrameOptions options = on_gpu(screen::default_recipe({}).name, size);
   RepeatedFrame picture(scene, bench.context, options);
-  const int frames = bench.measure(picture, work);
+  const int frames = bench.measure(scene, picture, work);
   Json passes = Json::array();
   for (const auto& pass : picture.timer().medians()) passes.push_back({{"name", pass.name}, {"ms", pass.gpu_ms}});
   rows.push_back({{"scene", scene.name},

@@ -18,19 +18,20 @@ struct GpuBenchOptions {
   std::string command, date, machine;
 };
 
-/// What a GPU does with volgi, all on the device of `context`:
-/// - copies: a buffer copied to another on the GPU, several sizes. GB/s counts every byte twice, read and written.
+/// What a GPU does with volgi, all on the device of `context`, in parts:
+/// - copies: a buffer to another on the GPU, several sizes. GB/s counts every byte twice, read and written.
 /// - error: frame time and error of indirect light against the references of cornell and room, at their size, for a few
 ///   settings; RMSE as Yardstick has it.
 /// - volume: cornell at several numbers of cells, scheme ordinates: voxelization and propagation of a frame, passes
-/// over
-///   the volume, and a sweep alone. Its share of the copy bandwidth is OrdinatesTransportGl::moved_bytes_for over its
-///   time, over the best copy: what reads more than it must, or waits, is below 1; what stays in caches may be above.
+///   over the volume, and a sweep alone. A sweep's share of the copy bandwidth is what it must move
+///   (OrdinatesTransportGl::moved_bytes_for) over its time, over the best copy. It is below 1 where a sweep waits or
+///   moves more, and may be above where caches hold the planes.
 /// - passes: every pass of the default recipe for cornell and atrium at 512 x 512 and 1920 x 1080.
 /// The volume is on the GPU in all of them. Sizes grow within a part. Where the time left is short, frames become 1,
-/// and what would exceed it is listed in `skipped`, by the time that smaller sizes took: all ends in about budget_s on
-/// a software rasterizer too.
-/// @param show  called with each part as a Markdown table, as soon as it is there.
+/// and what would exceed it by the time that smaller sizes took is listed in `skipped`: all ends in about budget_s on a
+/// software rasterizer too.
+/// @param show  called with each part as Markdown, as soon as it is there.
+/// @throws Error(bad_input) for a scene or reference that is not there.
 nlohmann::json bench_gpu(const std::function<Scene(const std::string&)>& scene, const gl::Context& context,
                          const GpuBenchOptions& options, const std::function<void(const std::string&)>& show);
 

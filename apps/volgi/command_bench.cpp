@@ -194,7 +194,7 @@ void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
 }
 
 std::string BenchCommand::gpu_command() const {
-  std::string text = fmt::format("volgi bench gpu --frames {} --budget {:g}", frames, budget_s);
+  std::string text = fmt::format("volgi bench gpu --frames {} --budget {:g}", quick ? 1 : frames, budget_s);
   if (quick) text += " --quick";
   if (device.context.device) text += fmt::format(" --device {}", *device.context.device);
   return text;
