@@ -147,4 +147,14 @@ size_t OrdinatesTransportGl::bytes_for(const Grid& grid, OrdinateChoice choice, 
   return sum + a_side * side_capacity;
 }
 
+size_t OrdinatesTransportGl::moved_bytes_for(const Grid& grid, OrdinateChoice choice, size_t sides) {
+  constexpr size_t kOctants = 8;
+  const size_t lanes = 3 * size_t(quads_of(choice.directions));
+  const size_t cells = cell_count(grid);
+  // Of a tile of 4 x 4 x 8 cells 4 x 4 faces across z, 4 x 8 across x and y each: 5 texels for every 8 cells.
+  const size_t planes = 2 * sizeof(glm::vec4) * kOctants * lanes * (5 * cells / 8);
+  const size_t a_side = kOctantsOfSide * (sizeof(glm::vec4) + 2 * sizeof(float) * lanes);
+  return planes + kOctants * sizeof(std::uint32_t) * cells + a_side * sides;
+}
+
 }  // namespace volgi

@@ -33,6 +33,10 @@ class OrdinatesTransportGl : public TransportGl {
   size_t bytes() const override;
   /// What bytes() will be.
   static size_t bytes_for(const Grid& grid, OrdinateChoice choice, std::uint32_t side_capacity);
+  /// What carry() must move at least [bytes]: what passes between tiles through the planes, read and written; each
+  /// cell's word once an octant; each side's light once for each of the four octants that can leave it, and what they
+  /// bring to it, written and then read. Invocations of a work group that read the same word count as one.
+  static size_t moved_bytes_for(const Grid& grid, OrdinateChoice choice, size_t sides);
   /// Dispatches of an order's sweep.
   int dispatches() const { return int(first_block_.size()) - 1; }
 

@@ -4,19 +4,23 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 
 #include "apps/bench/against_path_tracing.h"
 #include "apps/bench/cochran2007.h"
 #include "apps/bench/conservative.h"
 #include "apps/bench/dong2009.h"
+#include "apps/bench/gpu.h"
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
+#include "apps/report/machine.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_stats.h"
 #include "apps/volgi/volume_options.h"
+#include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/log.h"
@@ -50,6 +54,9 @@ struct BenchCommand {
   DeviceOptions device;
 
   int largest_grid = 128;
+  double budget_s = GpuBenchOptions{}.budget_s;
+  bool quick = false;
+  std::filesystem::path page;  // empty: none is written
 
   int run() const;
   void run_frames(nlohmann::json& results) const;
@@ -58,6 +65,8 @@ struct BenchCommand {
   void run_cochran2007(nlohmann::json& results) const;
   void run_dong2009(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
+  void run_gpu(nlohmann::json& results) const;
+  std::string gpu_command() const;
   std::vector<std::string> scenes_or(const std::vector<std::string>& usual) const {
     return scenes.empty() ? usual : scenes;
   }
@@ -184,14 +193,50 @@ void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
   }
 }
 
+std::string BenchCommand::gpu_command() const {
+  std::string text = fmt::format("volgi bench gpu --frames {} --budget {:g}", quick ? 1 : frames, budget_s);
+  if (quick) text += " --quick";
+  if (device.context.device) text += fmt::format(" --device {}", *device.context.device);
+  return text;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw Error(ExitCode::cannot_write, path.string() + ": cannot write this file");
+  });
+}
+
+void BenchCommand::run_gpu(nlohmann::json& results) const {
+  if (!page.empty()) check_writable(page);  // not after minutes
+  const gl::Context context(device.context);
+  GpuBenchOptions options;
+  options.frames = quick ? 1 : frames;
+  options.budget_s = budget_s;
+  options.quick = quick;
+  options.references = data / "references";
+  options.command = gpu_command();
+  options.date = date_now();
+  options.machine = machine_name();
+  nlohmann::json& r = results["gpu"];
+  r = bench_gpu([this](const std::string& name) { return scene(name); }, context, options,
+                [this](const std::string& table) { show(table); });
+  if (!page.empty()) write_text(page, gpu_page(r));
+}
+
 struct Benchmark {
   const char* name;
   void (BenchCommand::*run)(nlohmann::json&) const;
 };
-constexpr Benchmark kBenchmarks[] = {
-    {"frame", &BenchCommand::run_frames},      {"propagation", &BenchCommand::run_propagation},
-    {"voxelize", &BenchCommand::run_voxelize}, {"cochran2007", &BenchCommand::run_cochran2007},
-    {"dong2009", &BenchCommand::run_dong2009}, {"against-path-tracing", &BenchCommand::run_against_path_tracing}};
+constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
+                                     {"propagation", &BenchCommand::run_propagation},
+                                     {"voxelize", &BenchCommand::run_voxelize},
+                                     {"cochran2007", &BenchCommand::run_cochran2007},
+                                     {"dong2009", &BenchCommand::run_dong2009},
+                                     {"against-path-tracing", &BenchCommand::run_against_path_tracing},
+                                     {"gpu", &BenchCommand::run_gpu}};
 
 std::string benchmark_names() {
   std::vector<const char*> names;
@@ -204,10 +249,13 @@ int BenchCommand::run() const {
     if (std::none_of(std::begin(kBenchmarks), std::end(kBenchmarks), [&](const auto& b) { return b.name == name; }))
       throw Error(ExitCode::usage, "no benchmark '" + name + "'; there are: " + benchmark_names());
   }
+  const auto asked = [this](const char* name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (!page.empty() && !asked("gpu")) throw Error(ExitCode::usage, "-o is the page of the benchmark gpu: name it too");
   nlohmann::json results;
   for (const Benchmark& benchmark : kBenchmarks) {
-    if (names.empty() || std::find(names.begin(), names.end(), benchmark.name) != names.end())
-      (this->*benchmark.run)(results);
+    if (asked(benchmark.name)) (this->*benchmark.run)(results);
   }
   if (json) fmt::print("{}\n", results.dump(1));
   return int(ExitCode::done);
@@ -221,7 +269,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "bench",
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
       "time the CPU's volume against copying memory and OpenVDB; 'cochran2007' and 'dong2009' repeat those papers' "
-      "tables and curve; 'against-path-tracing' tells how long path tracing takes to the error of --gi hybrid");
+      "tables and curve; 'against-path-tracing' tells how long path tracing takes to the error of --gi hybrid; "
+      "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
   command->add_option("--data", options->data, "folder of cornell.glb")->capture_default_str();
   command->add_option("--generated", options->generated, "folder of atrium.glb")->capture_default_str();
@@ -253,6 +302,14 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--iterations", options->iterations, "passes over the volume")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command
+      ->add_option("--budget", options->budget_s,
+                   "gpu: seconds that it may take, about; what does not fit is measured once, or skipped by name")
+      ->check(CLI::Range(1.0, 1e5))
+      ->capture_default_str();
+  command->add_flag("--quick", options->quick,
+                    "gpu: cornell alone, small, one frame; tries the benchmark, not the GPU");
+  command->add_option("-o,--summary", options->page, "gpu: Markdown page to write")->type_name("FILE.md");
   options->device.add_to(*command);
   command->add_flag("--json", options->json, "print JSON");
   command->footer("Example: volgi bench frame --frames 5");

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <charconv>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -244,7 +247,7 @@ std::vector<Candidate> candidates(const ClientFunctions& egl, std::optional<int>
   const std::vector<Device> all = devices(egl);
   if (device_index) {
     if (*device_index < 0 || size_t(*device_index) >= all.size()) {
-      throw Error(ExitCode::usage, "--device " + std::to_string(*device_index) + " does not exist: EGL reports " +
+      throw Error(ExitCode::usage, "device " + std::to_string(*device_index) + " does not exist: EGL reports " +
                                        std::to_string(all.size()) + " devices, numbered from 0");
     }
     return {{EGL_PLATFORM_DEVICE_EXT, all[size_t(*device_index)].handle, false}};
@@ -263,12 +266,23 @@ std::vector<Candidate> candidates(const ClientFunctions& egl, std::optional<int>
   return list;
 }
 
+std::optional<int> device_of_environment() {
+  const char* text = std::getenv("VOLGI_DEVICE");
+  if (text == nullptr || *text == '\0') return std::nullopt;
+  int device = 0;
+  const char* const end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, device);
+  if (error != std::errc() || stop != end)
+    throw Error(ExitCode::usage, std::string("VOLGI_DEVICE='") + text + "': give the number of an EGL device");
+  return device;
+}
+
 }  // namespace
 
 Context::Context(const ContextOptions& options) : data_(std::make_unique<Data>()) {
   const ClientFunctions egl = client_functions();
   bool open = false;
-  for (const Candidate& c : candidates(egl, options.device)) {
+  for (const Candidate& c : candidates(egl, options.device ? options.device : device_of_environment())) {
     if (egl.get_platform_display == nullptr) break;
     open = data_->open(egl.get_platform_display(c.platform, c.native, nullptr), options.debug) &&
            !(c.hardware && is_software(data_->name));

@@ -6,15 +6,15 @@
 namespace volgi::gl {
 
 struct ContextOptions {
-  std::optional<int> device = {};  // as EGL numbers them; none: the first hardware device that works, else software
-  bool debug = false;         // GL says what is wrong where it is wrong; slower on some drivers
+  std::optional<int> device = {};  // as EGL numbers them; none: VOLGI_DEVICE, else the first of hardware, else software
+  bool debug = false;              // GL says what is wrong where it is wrong; slower on some drivers
 };
 
 /// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL: device platform for
 /// hardware first, then Mesa's surfaceless platform, then a software device (llvmpipe). The context that was current
 /// before is current again when this one ends.
 /// @throws Error(no_device) when nothing gives a 4.5 core context, or its limits are below what the passes need
-///   (core/gl/limits.h); Error(usage) when the device does not exist.
+///   (core/gl/limits.h); Error(usage) when the device, or that of VOLGI_DEVICE, does not exist.
 /// With `debug`, messages of high severity and of errors are counted, printed on stderr, and thrown by throw_on_error.
 class Context {
  public:

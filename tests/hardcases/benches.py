@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""volgi bench against-path-tracing and dong2009, tiny: what they measure must hang together.
+"""volgi bench against-path-tracing, dong2009 and gpu, tiny: what they measure must hang together.
 
 benches.py VOLGI SOURCE_FOLDER
 """
@@ -66,6 +66,50 @@ def dong2009():
     assert "theirs: Cornell Box" in table and "geometry-aware blur" in table and "exact visibility" in table, table
 
 
+def gpu(page):
+    result = json.loads(bench("gpu", "--quick", "--json", "-o", page))["gpu"]
+    assert result["device"] and result["gl_version"] and result["timer"] in ("gpu", "wall"), result
+    assert result["skipped"] == [], result["skipped"]
+    rows = {part: result[part] for part in ("copies", "error", "volume", "passes")}
+    assert [len(rows[part]) for part in rows] == [1, 2, 1, 1], rows
+    for part in rows.values():
+        for row in part:
+            assert all(value > 0 for value in row.values() if isinstance(value, (int, float))), row
+    assert result["copy_gb_per_s"] == rows["copies"][0]["gb_per_s"], rows["copies"]
+
+    (volume,), (frame,) = rows["volume"], rows["passes"]
+    assert volume["grid"] == [16, 16, 16] and volume["converged"], volume
+    # Passes are sweeps and what the solver does between them.
+    assert volume["propagation_ms"] > 0.3 * volume["passes"] * volume["sweep_ms"], volume
+    rate = volume["sweep_bytes"] / volume["sweep_ms"] / 1e6
+    assert abs(volume["share_of_copy"] * result["copy_gb_per_s"] / rate - 1) < 1e-9, volume
+    assert abs(sum(p["ms"] for p in frame["passes"]) / frame["all_passes_ms"] - 1) < 1e-9, frame
+    assert {"propagation/propagate", "screen/base/compose"} <= {p["name"] for p in frame["passes"]}, frame
+    hybrid, vpl = rows["error"]
+    assert 1 < hybrid["error_percent"] < 20 and 0.9 < hybrid["energy"] < 1.1, hybrid
+    assert vpl["error_percent"] > hybrid["error_percent"] and vpl["energy"] < hybrid["energy"], rows["error"]
+
+    text = page.read_text(encoding="utf-8")
+    assert [p.name for p in page.parent.iterdir()] == [page.name], "nothing half-written beside the page"
+    assert text.startswith(f"# {result['device']}: "), text[:200]
+    for part in ("Copying", "Frame time against error", "The volume", "Passes"):
+        assert f"\n## {part}\n" in text, part
+    assert "## Skipped" not in text and all(f"`{p['name']}`" in text for p in frame["passes"]), text
+
+
+def gpu_without_time(page):
+    """One second is less than a software rasterizer takes: what is left out has its name on the page."""
+    result = json.loads(bench("gpu", "--quick", "--json", "--budget", "1", "-o", page))["gpu"]
+    text = page.read_text(encoding="utf-8")
+    for row in result["skipped"]:
+        assert row["estimate_s"] > row["left_s"] >= 0 and f"- {row['part']}: {row['what']}, " in text, row
+    if result["software"]:
+        assert result["skipped"] and len(result["error"]) == 1, result
+
+
+with tempfile.TemporaryDirectory() as folder:
+    gpu(pathlib.Path(folder, "gpu.md"))
+    gpu_without_time(pathlib.Path(folder, "gpu.md"))
 with tempfile.TemporaryDirectory() as cache_folder:
     against_path_tracing(cache_folder)
 dong2009()

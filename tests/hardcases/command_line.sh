@@ -62,6 +62,11 @@ if [[ -n $gl ]]; then
   refuse 2 grid.shift=9 render "$scene" -o out.exr --set grid.shift=9
   refuse 2 grid.shift render "$scene" -o out.exr --set grid.shift
   refuse 2 "device 99" render "$scene" -o out.exr --device 99
+  VOLGI_DEVICE=98 refuse 2 "device 98" render "$scene" -o out.exr
+  VOLGI_DEVICE=98 refuse 2 "device 99" render "$scene" -o out.exr --device 99
+  VOLGI_DEVICE=first refuse 2 "VOLGI_DEVICE='first'" render "$scene" -o out.exr
+  refuse 2 "benchmark gpu" bench frame -o out.md
+  refuse 6 none/ bench gpu --quick -o none/out.md
   refuse 6 none/ render "$scene" -o out.exr --size 8x8 --stats none/stats.json
   for number in 0 -1 65537 many 1.5; do
     refuse 2 --vpls render "$scene" -o out.exr --gi vpl "--vpls=$number"

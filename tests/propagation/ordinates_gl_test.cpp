@@ -175,5 +175,15 @@ TEST(OrdinatesGlOptions, AreChosen) {
   EXPECT_THROW(OrdinatesTransportGl(unit_grid(4), options), Error);
 }
 
+// A block of 8^3 cells, three lanes (a band of 24 directions, three to an octant) in each of 8 octants: four tiles that
+// read and write 16 faces across z and 32 across x and y each, 80 texels. A word a cell and octant. A side: its light
+// and three lanes written and read, in four octants.
+TEST(OrdinatesGlBytes, OfOneBlockAreCounted) {
+  Grid grid{};
+  grid.cells = glm::ivec3(8);
+  const size_t planes = 8 * 3 * 4 * 80 * 2 * 16, words = 8 * 512 * 4, a_side = 4 * (16 + 3 * (4 + 4));
+  EXPECT_EQ(OrdinatesTransportGl::moved_bytes_for(grid, {24, Ordinates::step}, 10), planes + words + 10 * a_side);
+}
+
 }  // namespace
 }  // namespace volgi::test
