@@ -221,12 +221,12 @@ void BouncesGl::begin_order(const Run& run) {
     solver_->set_source(run.voxels, powers(), run.flux.punctual());
     solver_->send_all(run.voxels, powers(), false);
   }
-  if (auto* resumable = dynamic_cast<ResumableGl*>(transport_.get())) resumable->begin_order(run.voxels, sent_);
+  if (ResumableGl* resumable = transport_->resumable()) resumable->begin_order(run.voxels, sent_);
   in_flight_ = true;
 }
 
 bool BouncesGl::advance_order(const Run& run, int most_passes, BounceReport& report) {
-  if (auto* resumable = dynamic_cast<ResumableGl*>(transport_.get())) {
+  if (ResumableGl* resumable = transport_->resumable()) {
     return resumable->advance_order(run.voxels, received_, most_passes, run.rules, report);
   }
   transport_->carry(run.voxels, sent_, received_, run.rules, report);
@@ -235,7 +235,7 @@ bool BouncesGl::advance_order(const Run& run, int most_passes, BounceReport& rep
 
 /// As many passes as there may be; an order that is not at its end then goes on in the next run.
 void BouncesGl::amortised(const Run& run, BounceReport& report) {
-  if (transport_->iterative() && dynamic_cast<ResumableGl*>(transport_.get()) == nullptr) {
+  if (transport_->iterative() && transport_->resumable() == nullptr) {
     throw Error(ExitCode::usage,
                 "amortised bounces: this scheme cannot interrupt an order on the GPU; use --scheme ordinates or "
                 "--backend cpu");

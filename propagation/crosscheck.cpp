@@ -306,8 +306,8 @@ class Stages {
 
   void pulse(int n, std::vector<CrosscheckRow>& rows) {
     PulseVolumeGl gpu(voxels().grid(), scheme_);
-    gpu.run(gpu_.voxelization.voxels(), gpu_.cells.normal_occupancy(), gpu_.cells.albedo(), flux_gl_.emitted(), n,
-            gpu_.timer);
+    gpu.run(gpu_.voxelization.voxels(), {gpu_.cells.normal_occupancy(), gpu_.cells.albedo(), gpu_.cells.emission()},
+            flux_gl_.emitted(), n, gpu_.timer);
     const CellVolumes cells = to_cell_volumes(voxels().grid(), gpu_.cells.download());
     PulseVolume cpu(voxels(), cells, scheme_);
     cpu.run(flux_.emitted, n);

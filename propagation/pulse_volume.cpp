@@ -124,6 +124,10 @@ struct PulseVolume::Data {
   Data(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options);
 
   void inject(std::span<const glm::vec4> side_flux);
+  void inject_max(std::span<const glm::vec4> side_flux);
+  glm::vec3 radiosity_of_side(std::span<const glm::vec4> side_flux, glm::ivec3 cell, int face) const;
+  glm::vec3 reflected(std::span<const glm::vec4> side_flux, glm::ivec3 cell) const;
+  bool occupied(glm::ivec3 cell) const;
   void pass();
   void pass_leaf(int number, float* out, LeafLight& light);
   /// One cell: gathers from its six neighbours. @param lobes  the neighbours' first coefficients, by face.
@@ -134,16 +138,20 @@ struct PulseVolume::Data {
   void add_lobes(const Coefficients* shapes, const FacePowers& powers, float* cell) const;
 
   const VoxelGrid& voxels;
+  const CellVolumes& cells;
   Scheme scheme;
+  SchemeOptions::Injection injection;
   int coefficients;
   LobeWave wave;
   LobeSum sum;
   std::vector<std::unique_ptr<LeafSurfaces>> surfaces;  // by number of leaf, gaitatzes2010 only
 };
 
-PulseVolume::Data::Data(const VoxelGrid& v, const CellVolumes& cells, const SchemeOptions& options)
+PulseVolume::Data::Data(const VoxelGrid& v, const CellVolumes& c, const SchemeOptions& options)
     : voxels(v),
+      cells(c),
       scheme(options.scheme),
+      injection(options.injection),
       coefficients(options.sh_order == 1 ? 4 : 9),
       wave(LeafNumbers(v.grid().cells), coefficients),
       sum(wave.numbers(), coefficients),
@@ -194,6 +202,63 @@ void PulseVolume::Data::inject(std::span<const glm::vec4> side_flux) {
       float* cell = out + leaf_offset(shared::cell_coord(voxels.grid(), side.cell));
       for (int k = 0; k < coefficients; ++k) {
         for (int band = 0; band < kLobeBands; ++band) cell[lobe_block(k, band)] += side_flux[i][band] * lobe[size_t(k)];
+      }
+    }
+    look_at(out, light);
+  });
+}
+
+bool PulseVolume::Data::occupied(glm::ivec3 c) const {
+  return shared::cell_inside(voxels.grid(), c) &&
+         cells.occupancy->tree().getValue(openvdb::Coord(c.x, c.y, c.z)) > 0.0f;
+}
+
+glm::vec3 PulseVolume::Data::radiosity_of_side(std::span<const glm::vec4> side_flux, glm::ivec3 cell, int face) const {
+  if (!shared::cell_inside(voxels.grid(), cell)) return glm::vec3(0.0f);
+  const glm::uvec2 own = voxels.cell_sides(cell);
+  if (!shared::has_side(own, face)) return glm::vec3(0.0f);
+  const std::uint32_t s = shared::side_index(own, face);
+  const float h = voxels.grid().cell_size_m;
+  return glm::vec3(side_flux[s]) / std::max(voxels.sides()[s].area_m2, LEAST_SIDE_AREA * h * h);
+}
+
+/// Largest radiosity of what sides show of the surfaces in an occupied cell: its own sides, and those of empty cells
+/// beside it.
+glm::vec3 PulseVolume::Data::reflected(std::span<const glm::vec4> side_flux, glm::ivec3 cell) const {
+  glm::vec3 most(0.0f);
+  for (int face = 0; face < 6; ++face) {
+    most = glm::max(most, radiosity_of_side(side_flux, cell, face));
+    const glm::ivec3 beside = cell + shared::face_step(face);
+    if (!occupied(beside)) most = glm::max(most, radiosity_of_side(side_flux, beside, face ^ 1));
+  }
+  return most;
+}
+
+/// As printed: pulse_inject_max.comp.glsl.
+void PulseVolume::Data::inject_max(std::span<const glm::vec4> side_flux) {
+  const float h = voxels.grid().cell_size_m;
+  std::vector<int> leaves;
+  for (auto leaf = cells.occupancy->tree().cbeginLeaf(); leaf; ++leaf) {
+    const openvdb::Coord at = leaf->origin();
+    leaves.push_back(wave.numbers().number(glm::ivec3(at.x(), at.y(), at.z()) / kLeafCells));
+  }
+  std::sort(leaves.begin(), leaves.end());
+  wave.start(std::move(leaves), [&](int number, float* out, LeafLight& light) {
+    std::fill(out, out + wave.now().leaf_floats(), 0.0f);
+    const glm::ivec3 first = kLeafCells * wave.numbers().block(number);
+    const auto* leaf = cells.occupancy->tree().probeConstLeaf(openvdb::Coord(first.x, first.y, first.z));
+    for (auto value = leaf->cbeginValueOn(); value; ++value) {
+      const openvdb::Coord at = value.getCoord();
+      if (*value <= 0.0f) continue;
+      const openvdb::Vec3s n = cells.normal->tree().getValue(at), e = cells.emission->tree().getValue(at);
+      const glm::vec3 normal(n[0], n[1], n[2]);
+      const bool turned = normal != glm::vec3(0.0f);  // where normals cancel, light leaves to all sides
+      const Coefficients lobe = turned ? lobe_about(normal, shared::COSINE_ZONAL_1, shared::COSINE_ZONAL_2)
+                                       : lobe_about({0.0f, 0.0f, 1.0f}, 0.0f, 0.0f);
+      const glm::vec3 power = h * h * (glm::vec3(e[0], e[1], e[2]) + reflected(side_flux, {at.x(), at.y(), at.z()}));
+      float* cell = out + value.pos();
+      for (int k = 0; k < coefficients; ++k) {
+        for (int band = 0; band < kLobeBands; ++band) cell[lobe_block(k, band)] += power[band] * lobe[size_t(k)];
       }
     }
     look_at(out, light);
@@ -292,7 +357,7 @@ PulseVolume::~PulseVolume() = default;
 BounceReport PulseVolume::run(std::span<const glm::vec4> side_flux, int iterations) {
   BounceReport report;
   data_->sum.clear();
-  data_->inject(side_flux);
+  data_->injection == SchemeOptions::Injection::max ? data_->inject_max(side_flux) : data_->inject(side_flux);
   report.sent = glm::vec3(data_->wave.in_flight());
   for (; report.passes < iterations; ++report.passes) data_->pass();
   report.left = glm::vec3(data_->wave.in_flight());

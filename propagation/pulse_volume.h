@@ -16,12 +16,13 @@ namespace volgi {
 /// neither sides nor orders (docs/theory.md#papers). Twin of PulseVolumeGl.
 class PulseVolume {
  public:
-  /// @param cells  occupancy, normal and albedo for gaitatzes2010; must outlive this.
+  /// @param cells  occupancy, normal and albedo for gaitatzes2010, emission for its injection by MAX; must outlive
+  /// this.
   PulseVolume(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options);
   ~PulseVolume();
 
-  /// Injects the flux of sides as cosine lobes about their normals, into the cells that see them, and runs `iterations`
-  /// passes over the volume.
+  /// Injects the flux of sides, as options.injection says (flux: as cosine lobes about their normals, into the cells
+  /// that see them; max: without that of emission, which the cells have), and runs `iterations` passes.
   BounceReport run(std::span<const glm::vec4> side_flux, int iterations);
   /// Accumulated radiance, in the frame that pixels read: irradiance on a surface of normal n is the cosine lobe about
   /// -n (directions are those that light travels: docs/conventions.md#spherical-harmonics).

@@ -30,7 +30,7 @@ const SchemeOptions& checked(const SchemeOptions& options) {
 PulseVolumeGl::PulseVolumeGl(const Grid& grid, const SchemeOptions& options)
     : grid_(grid),
       options_(checked(options)),
-      inject_(compile("pulse_inject")),
+      inject_(compile(options.injection == SchemeOptions::Injection::max ? "pulse_inject_max" : "pulse_inject")),
       pass_(compile(options.scheme == Scheme::lpv2009 ? "pulse_lpv" : "pulse_gaitatzes")),
       add_radiance_(compile("add_radiance")),
       sum_sent_(gl::Program::compute("propagation/sum_sent.comp.glsl")),
@@ -55,20 +55,26 @@ void PulseVolumeGl::dispatch_cells() const {
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
-BounceReport PulseVolumeGl::run(const VoxelGridGl& voxels, const gl::Texture& normal_occupancy,
-                                const gl::Texture& albedo, const gl::Buffer& side_flux, int iterations,
-                                gl::PassTimer& timer) {
-  auto scope = timer.scope("propagation/propagate");
+void PulseVolumeGl::inject(const VoxelGridGl& voxels, const Cells& cells, const gl::Buffer& side_flux) {
   voxels.bind();
-  sum_side_flux(side_flux);
+  if (!by_max()) sum_side_flux(side_flux);
   side_flux.bind_storage(7);
+  cells.normal_occupancy.bind(2);
+  cells.emission.bind(3);
   lobes_[current_].bind_image(0, GL_WRITE_ONLY);
   inject_.use();
   dispatch_cells();
+  if (by_max()) sum_in_flight();  // what surfaces send is not what goes in
+}
+
+BounceReport PulseVolumeGl::run(const VoxelGridGl& voxels, const Cells& cells, const gl::Buffer& side_flux,
+                                int iterations, gl::PassTimer& timer) {
+  auto scope = timer.scope("propagation/propagate");
+  inject(voxels, cells, side_flux);
   accumulated_[current_].clear({0.0f, 0.0f, 0.0f, 0.0f});
   if (options_.scheme == Scheme::gaitatzes2010) {
-    normal_occupancy.bind(2);
-    albedo.bind(3);
+    cells.normal_occupancy.bind(2);
+    cells.albedo.bind(3);
     pass_.set("constant_albedo", int(options_.constant_albedo));
   }
   for (int i = 0; i < iterations; ++i) pass();

@@ -17,16 +17,21 @@ namespace volgi {
 /// PulseVolume.
 class PulseVolumeGl {
  public:
+  /// What cells hold of surfaces (CellVolumesGl), RGBA textures of the grid's cells. lpv2009 takes any.
+  struct Cells {
+    const gl::Texture& normal_occupancy;  // mean of the fronts (unit, or zero), occupancy 0 ... 1
+    const gl::Texture& albedo;
+    const gl::Texture& emission;  // largest radiosity pi L_e; read where options.injection is max
+  };
+
   /// @throws Error(usage) for schemes that carry sides.
   PulseVolumeGl(const Grid& grid, const SchemeOptions& options);
 
-  /// Injects the flux of sides as cosine lobes about their normals, into the cells that see them, and runs `iterations`
-  /// passes over the volume. Timer "propagation/propagate".
-  /// @param normal_occupancy  RGBA texture of the grid's cells: mean of the fronts (unit, or zero), occupancy 0 ... 1.
-  /// @param albedo            RGBA texture of the grid's cells. Both are for gaitatzes2010; lpv2009 takes any.
-  /// @param side_flux         A B0 of each side [W], vec4, rgb.
-  BounceReport run(const VoxelGridGl& voxels, const gl::Texture& normal_occupancy, const gl::Texture& albedo,
-                   const gl::Buffer& side_flux, int iterations, gl::PassTimer& timer);
+  /// Injects the flux of sides, as options.injection says (flux: as cosine lobes about their normals, into the cells
+  /// that see them), and runs `iterations` passes over the volume. Timer "propagation/propagate".
+  /// @param side_flux  A B0 of each side [W], vec4, rgb; by MAX without that of emission, which `cells` have.
+  BounceReport run(const VoxelGridGl& voxels, const Cells& cells, const gl::Buffer& side_flux, int iterations,
+                   gl::PassTimer& timer);
 
   /// Of the last run, in the frame that pixels read: irradiance on a surface of normal n is the cosine lobe about -n.
   const RadianceVolumeGl& radiance() const { return radiance_; }
@@ -36,7 +41,9 @@ class PulseVolumeGl {
  private:
   gl::Program compile(const char* shader) const;
   void dispatch_cells() const;
+  void inject(const VoxelGridGl& voxels, const Cells& cells, const gl::Buffer& side_flux);
   void sum_side_flux(const gl::Buffer& side_flux);
+  bool by_max() const { return options_.injection == SchemeOptions::Injection::max; }
   void sum_in_flight();
   void pass();
   void read_out();

@@ -21,6 +21,10 @@ struct SchemeOptions {
   std::optional<Ordinates> ordinates;  // none: what goes with the grid
   int sh_order = 1;                    // of the three SH schemes: 1 or 2
   bool constant_albedo = false;        // gaitatzes2010: 0.5 after the first bounce, as the paper has it
+  /// gaitatzes2010, what the pulse starts from. flux: what sides send, each into the cell that sees it, power kept as
+  /// in all schemes. max: as the paper has it (section 4.1, Algorithm 1), a light of a cell's face and of the largest
+  /// radiosity of the surfaces in each occupied cell; no power is kept (docs/theory.md#papers).
+  enum class Injection { flux, max } injection = Injection::flux;
   /// conservative: the end of every pulse is carried on a grid of twice the cells' edge. None: where the backend has
   /// that, which is the CPU; asked for on the GPU it is refused (refuse_on_gpu).
   std::optional<bool> coarse_start;

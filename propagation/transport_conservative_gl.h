@@ -30,6 +30,7 @@ class ConservativeTransportGl : public TransportGl, public ResumableGl {
                      const BounceRules& rules, BounceReport& report) override;
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return true; }
+  ResumableGl* resumable() override { return this; }
   size_t bytes() const override { return bytes_for(grid_, order_); }
   static size_t bytes_for(const Grid& grid, int sh_order);
 

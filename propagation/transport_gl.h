@@ -5,6 +5,8 @@
 
 namespace volgi {
 
+class ResumableGl;
+
 /// A scheme: the operator that carries the power which sides send through the grid until sides receive it or it leaves.
 class TransportGl {
  public:
@@ -19,6 +21,8 @@ class TransportGl {
   virtual RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) = 0;
   /// Whether an order takes a number of passes that rules.iterations can set.
   virtual bool iterative() const = 0;
+  /// What carries orders on in parts; null where an order cannot stop in between.
+  virtual ResumableGl* resumable() { return nullptr; }
   virtual size_t bytes() const = 0;
 };
 

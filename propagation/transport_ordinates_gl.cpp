@@ -100,7 +100,7 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
 }
 
 void OrdinatesTransportGl::sweep() {
-  shares_.bind_storage(9);
+  shares_.bind_storage(6);
   cell_word_.bind(1);
   side_light_.bind(2);
   block_list_.bind(3);

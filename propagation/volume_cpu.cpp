@@ -128,7 +128,8 @@ void VolumeCpu::propagate() {
     return;
   }
   std::vector<glm::vec4> all = flux_.punctual;
-  for (size_t i = 0; i < all.size(); ++i) all[i] += flux_.emitted[i];
+  const bool by_max = options_.scheme.injection == SchemeOptions::Injection::max;  // emission comes with the cells
+  for (size_t i = 0; i < all.size() && !by_max; ++i) all[i] += flux_.emitted[i];
   report_ = pulse_->run(all, options_.iterations.value_or(VolumeOptions::kPulseIterations));
 }
 

@@ -15,6 +15,8 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
     if (o.warm_start || o.passes_a_run)
       throw Error(ExitCode::usage, "the papers' schemes start every frame anew: no warm start, no amortised frames");
   }
+  if (o.source == VolumeOptions::Source::first_bounce && o.scheme.injection == SchemeOptions::Injection::max)
+    throw Error(ExitCode::usage, "gaitatzes.inject=max starts from lights: use --gi volume");
   BounceRules rules;
   rules.bounces = o.bounces;
   // The screen carries one; emission has one order more, whose arrival is then bounce 1 (BounceRules::bounces).
@@ -28,9 +30,17 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
 }
 
 void refuse_on_gpu(const VolumeOptions& o) {
+  if (o.voxelization.method == VoxelizationMethod::single_pass && o.voxelization.interleave)
+    throw Error(ExitCode::usage, "voxel.interleave=1 takes turns at axes, which voxel.method=single_pass has not");
   if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
     throw Error(ExitCode::usage,
                 "conservative.coarse=1: the GPU has no coarse grid; leave it out, or use --backend cpu");
+}
+
+void refuse_on_cpu(const VolumeOptions& o) {
+  if (o.voxelization.method != VoxelizationMethod::sliced || o.voxelization.interleave)
+    throw Error(ExitCode::usage,
+                "voxel.method=single_pass, voxel.interleave=1: the CPU slices along three axes; use --backend gpu");
 }
 
 void refuse_above_limit(const VolumeOptions& o, size_t expected, const char* where) {

@@ -5,6 +5,7 @@
 
 #include "propagation/bounce_rules.h"
 #include "propagation/scheme.h"
+#include "voxel/voxelization_options.h"
 
 namespace volgi {
 
@@ -13,8 +14,9 @@ struct VolumeOptions {
   int grid_cells = 32;               // along the longest axis, 1 ... 256
   glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
   SchemeOptions scheme;
-  std::optional<int> bounces;     // BounceRules
-  std::optional<int> iterations;  // BounceRules; of the papers' schemes, kPulseIterations unless given
+  VoxelizationOptions voxelization;  // on the GPU
+  std::optional<int> bounces;        // BounceRules
+  std::optional<int> iterations;     // BounceRules; of the papers' schemes, kPulseIterations unless given
   BounceRules::Solver solver = BounceRules::Solver::automatic;
   bool warm_start = false;
   std::optional<int> passes_a_run;
@@ -34,8 +36,9 @@ struct VolumeOptions {
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
 
-/// @throws Error(usage) for what only the CPU can do.
+/// @throws Error(usage) for what the other backend alone can do, and for what neither can.
 void refuse_on_gpu(const VolumeOptions& options);
+void refuse_on_cpu(const VolumeOptions& options);
 
 /// @throws Error(over_limit) naming both figures when `expected` exceeds options.memory_limit. @param where  "CPU",
 /// "GPU".

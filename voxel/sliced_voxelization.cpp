@@ -40,8 +40,9 @@ size_t faces(const Grid& grid, int axis) { return size_t(shared::face_count(grid
 
 }  // namespace
 
-SlicedVoxelization::SlicedVoxelization(const Grid& grid, VoxelizationMethod method)
-    : method_(method),
+SlicedVoxelization::SlicedVoxelization(const Grid& grid, VoxelizationOptions options)
+    : method_(options.method),
+      interleave_(options.interleave),
       number_(gl::Program::compute("voxel/number_surfaces.comp.glsl")),
       coverage_(gl::Program::compute("voxel/coverage.comp.glsl")),
       count_(gl::Program::compute("voxel/list_sides_count.comp.glsl")),
@@ -75,7 +76,11 @@ const char* SlicedVoxelization::base_name() const {
   return method_ == VoxelizationMethod::sliced ? "voxel/slice" : "voxel/single_pass";
 }
 
-void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) { run_axes(scene, timer, 0, 2); }
+void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) {
+  if (!interleave_) return run_axes(scene, timer, 0, 2);
+  run(scene, timer, next_axis_);
+  next_axis_ = (next_axis_ + 1) % 3;
+}
 
 void SlicedVoxelization::run(const gl::SceneBuffers& scene, gl::PassTimer& timer, int axis) {
   assert(axis >= 0 && axis < 3);
@@ -102,7 +107,7 @@ void SlicedVoxelization::run_axes(const gl::SceneBuffers& scene, gl::PassTimer& 
     counted_->push(wanted_buffer_);
   }
   auto scope = timer.scope("voxel/side_area");
-  count_area(scene);
+  count_area(scene, first_axis, last_axis);
 }
 
 void SlicedVoxelization::mark(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
@@ -239,19 +244,28 @@ void SlicedVoxelization::fill_sides() {
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void SlicedVoxelization::count_area(const gl::SceneBuffers& scene) {
+/// Of the sides of these axes; the others keep what they had (list_sides_fill).
+void SlicedVoxelization::count_area(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
   area_fixed_.clear();
   voxels_.bind();
   area_fixed_.bind_storage(0);
   auto& program = side_area_[size_t(alpha_)];
   if (!program) program = gl::Program::raster("voxel/side_area", alpha_define(alpha_));
   program->set("footprint", kFootprintAlpha);
+  program->set("first_axis", first_axis);
+  program->set("last_axis", last_axis);
   gl::begin_fullscreen_pass();
   columns_.bind();
   scene.draw(*program);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   collect_area_.use();
-  dispatch_in_turn(voxels_.side_capacity, 64);
+  for (int axis = first_axis; axis <= last_axis; ++axis) {
+    const Family& f = families_[size_t(axis)];
+    f.entries.bind_storage(1);
+    f.surfaces.bind_storage(2);
+    collect_area_.set("axis", axis);
+    dispatch_in_turn(voxels_.side_capacity, 64);
+  }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

@@ -10,12 +10,9 @@
 #include "core/gl/scene_buffers.h"
 #include "voxel/expected_sides.h"
 #include "voxel/voxel_grid_gl.h"
+#include "voxel/voxelization_options.h"
 
 namespace volgi {
-
-/// How the scene meets the lattice: `sliced`, once along each axis; `single_pass`, every triangle once along the axis
-/// nearest to its normal, where a fragment finds the crossings of all three families. Both find the same (tests).
-enum class VoxelizationMethod { sliced, single_pass };
 
 /// 3-way sliced voxelization (Gaitatzes 2010, Algorithm 1), timers "voxel/slice", "voxel/list_sides" and
 /// "voxel/side_area". Twin of voxelize_cpu.
@@ -33,16 +30,17 @@ enum class VoxelizationMethod { sliced, single_pass };
 /// kept for the next frame. All buffers stay under 128 MiB up to 256^3 cells.
 class SlicedVoxelization {
  public:
-  explicit SlicedVoxelization(const Grid& grid, VoxelizationMethod method = VoxelizationMethod::sliced);
+  explicit SlicedVoxelization(const Grid& grid, VoxelizationOptions options = {});
 
-  /// Voxelizes the scene. Only the first run waits for the number of sides. A later one with a fifth more sides than
-  /// there is room for leaves some out of that frame, though what is closed stays closed; the next one makes room.
+  /// Voxelizes the scene, as the options say. Only the first run waits for the number of sides. A later one with a
+  /// fifth more sides than there is room for leaves some out of that frame, though what is closed stays closed; the
+  /// next one makes room.
   void run(const gl::SceneBuffers& scene, gl::PassTimer& timer);
   /// The next run waits for the number of sides as the first one does: a scene that has moved gets all of its sides,
   /// those that a new object would find.
   void count_again() { count_and_wait_ = true; }
-  /// Interleaved: slices along one axis only and keeps what earlier runs found along the others. Three runs, one for
-  /// each axis, over a scene at rest end as one full run does. The first run, and any of a single_pass, is a full one.
+  /// One interleaved run (VoxelizationOptions::interleave), along this axis. The first one, and any of a single_pass,
+  /// is a full one.
   void run(const gl::SceneBuffers& scene, gl::PassTimer& timer, int axis);
 
   const VoxelGridGl& voxels() const { return voxels_; }
@@ -70,12 +68,14 @@ class SlicedVoxelization {
   void find_coverage();
   void list_sides();
   void fill_sides();
-  void count_area(const gl::SceneBuffers& scene);
+  void count_area(const gl::SceneBuffers& scene, int first_axis, int last_axis);
   void count_surfaces(int first_axis, int last_axis);
   void make_room_for_surfaces(int axis);
   void make_room_for_sides();
 
   VoxelizationMethod method_;
+  bool interleave_;
+  int next_axis_ = 0;                                           // of an interleaved run
   std::array<std::optional<gl::Program>, 2> mark_, side_area_;  // without and with alpha, made when needed
   gl::Program write_;
   gl::Program number_, coverage_, count_, offset_, fill_, collect_area_;

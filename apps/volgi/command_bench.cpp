@@ -15,6 +15,7 @@
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
+#include "apps/bench/voxelize_gl.h"
 #include "apps/report/machine.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
@@ -152,9 +153,12 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
 }
 
 void BenchCommand::run_voxelize(nlohmann::json& results) const {
+  const gl::Context context(device);
   for (const std::string& name : scenes_or({"atrium", "atrium_detail"})) {
     nlohmann::json& r = results["voxelize"].emplace_back(bench_voxelize(scene(name), largest_grid, frames));
     show(voxelize_table(r));
+    nlohmann::json& gpu = results["voxelize_gpu"].emplace_back(bench_voxelize_gl(scene(name), largest_grid, frames));
+    show(voxelize_gl_table(gpu));
   }
 }
 

@@ -16,7 +16,7 @@ Grid grid_of(const Scene& scene, const VolumeOptions& options) {
 class VoxelsOnGpu : public FrameVoxels {
  public:
   VoxelsOnGpu(const Scene& scene, const VolumeOptions& options)
-      : scene_(scene), options_(options), voxelization_(std::in_place, grid_of(scene, options)) {}
+      : scene_(scene), options_(options), voxelization_(std::in_place, grid_of(scene, options), options.voxelization) {}
 
   void run(const gl::SceneBuffers& buffers, gl::PassTimer& timer) override { voxelization_->run(buffers, timer); }
   void follow_scene() override {
@@ -24,7 +24,7 @@ class VoxelsOnGpu : public FrameVoxels {
     if (same_grid(grid, voxels().grid)) {
       voxelization_->count_again();
     } else {
-      voxelization_.emplace(grid);
+      voxelization_.emplace(grid, options_.voxelization);
     }
   }
   const VoxelGridGl& voxels() const override { return voxelization_->voxels(); }

@@ -1,12 +1,12 @@
 #version 450 core
-// One transport order of the `ordinates` scheme: discrete ordinates (docs/theory.md#ordinates). The flow of the directions
-// of one octant is ordered, so one sweep over the cells, upwind cells first, solves void, blocked and partly transmitting
-// faces to rounding.
+// One transport order of the `ordinates` scheme: discrete ordinates (docs/theory.md#ordinates). The flow of the
+// directions of one octant is ordered, so one sweep over the cells, upwind cells first, solves void, blocked and partly
+// transmitting faces to rounding.
 //
 // A work group takes a block of 8^3 cells of all octants, a dispatch one diagonal of blocks: these do not depend on each
 // other. An invocation has one band of four directions of an octant and walks through the block's cells, so that no two
-// invocations wait for each other. It takes tiles of 4 x 4 cells along z; what passes between the cells of a tile stays in
-// registers, what passes between tiles lies in one plane of the grid an axis, read and written in place.
+// invocations wait for each other. It takes tiles of 4 x 4 cells along z; what passes between the cells of a tile stays
+// in registers, what passes between tiles lies in one plane of the grid an axis, read and written in place.
 // Set by the program: QUADS = 4
 // Set by the program: CHARACTERISTIC = 1
 #include "shared/grid.shared.h"
@@ -17,13 +17,14 @@ layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 // Of four directions; a is an upwind, b a downwind face's axis.
 struct QuadShares {
   vec4 emitted[3];  // of what a side on face a sends (OrdinateSet::emitted_share)
-  vec4 downwind[CHARACTERISTIC != 0 ? 9 : 3];  // step: of a cell's power through face b; SC1: of what comes in by a through b, 3 a + b
+  // Step: of a cell's power through face b. Characteristic (SC1): of what comes in by face a through face b, 3 a + b.
+  vec4 downwind[CHARACTERISTIC != 0 ? 9 : 3];
 };
-layout(std430, binding = 9) readonly buffer Shares { QuadShares shares[QUADS]; };
+layout(std430, binding = 6) readonly buffer Shares { QuadShares shares[QUADS]; };
 layout(binding = 1) uniform usampler3D cell_word;   // (first side << 6) | faces (prepare_sweep)
 layout(binding = 2) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
 layout(binding = 3) uniform usampler2D block_list;  // of all diagonals: x | y << 8 | z << 16
-// What leaves cells through their downwind faces [W], by octant and lane, then by the face's place: (y,z), (x,z), (x,y).
+// What leaves cells through downwind faces [W], by octant and lane, then by the face's place: (y,z), (x,z), (x,y).
 layout(binding = 0, rgba32f) uniform restrict image3D x_faces;
 layout(binding = 1, rgba32f) uniform restrict image3D y_faces;
 layout(binding = 2, rgba32f) uniform restrict image3D z_faces;
@@ -40,7 +41,8 @@ QuadShares own = shares[lane % QUADS];
 // Flow coordinates grow along the octant's flow: cell = cell_of_flow_0 + cell_step * flow.
 ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
 ivec3 cell_of_flow_0 = (1 - positive) * (grid.cells - 1), cell_step = 2 * positive - 1;
-uint upwind_faces = (2u >> positive.x) | (8u >> positive.y) | (32u >> positive.z);  // 2 a where flow is positive, 2 a + 1
+// Bits of a cell's faces: of axis a 2 a where the flow is positive, else 2 a + 1.
+uint upwind_faces = (2u >> positive.x) | (8u >> positive.y) | (32u >> positive.z);
 
 int side_of(uint word, int face) { return int(word >> 6) + bitCount(word & ((1u << face) - 1u)); }
 

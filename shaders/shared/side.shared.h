@@ -85,5 +85,9 @@ SHARED_FUNCTION float side_weight(vec3 normal, int axis, float area_m2) {
 // nothing measurable: furnaces are the same to seven digits, pictures of data/ to 0.5 % of their energy.
 #define SIDE_LEAST_FILL 0.25f
 
+// Radiosity of a side from its flux: over its area, or over this part of a cell's face where that is smaller, as at the
+// rim of a surface.
+#define LEAST_SIDE_AREA 0.05f
+
 SHARED_END
 #endif

@@ -1,6 +1,6 @@
 #version 450 core
 // The two sides of every covered face of one axis, from the surfaces that its cells see; black ones where the list of
-// surfaces had no room in this frame. Areas follow (collect_area).
+// surfaces had no room in this frame. Areas follow (collect_area), but for axes that are not sliced in this frame.
 #include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
@@ -25,7 +25,7 @@ void write_side(ivec3 cell, int face, Surface s, float covered) {
   side.coverage = covered;
   side.albedo = s.albedo;
   side.face_m2 = covered * grid.cell_size_m * grid.cell_size_m;
-  side.area_m2 = side.face_m2 / staircase_factor(s.normal);
+  side.area_m2 = s.area_m2 > 0.0 ? s.area_m2 : side.face_m2 / staircase_factor(s.normal);
   side.radiosity = s.radiosity;
   side.cell = offset;
   side.face = face;

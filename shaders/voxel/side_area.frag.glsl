@@ -6,6 +6,7 @@
 #include "voxel/find_side.glsl"
 
 layout(std430, binding = 0) buffer AreaFixed { uint area_fixed[]; };  // 2^-20 h^2
+uniform int first_axis, last_axis;  // of the faces whose sides' areas are counted
 
 void add_piece(inout Heap heap, vec3 weights, float stopped) {}
 
@@ -22,7 +23,7 @@ void end_cell(Lines lines, Heap heap) {
     }
     int count = place_matters ? 1 : bitCount(rest);
     for (int way = 0; way < 2; ++way) {
-      for (int a = 0; a < 3; ++a) {
+      for (int a = first_axis; a <= last_axis; ++a) {
         if (weights[way][a] <= 0.0) continue;
         atomicAdd(area_fixed[targets[way][a]], uint(weights[way][a] * each * 1048576.0 + 0.5) * uint(count));
       }

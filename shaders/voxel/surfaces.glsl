@@ -5,6 +5,6 @@ struct Surface {
   vec3 albedo;
   int front;  // 1: of the triangle
   vec3 radiosity;
-  float pad;
+  float area_m2;  // of its side, when it was last counted; 0: not yet (collect_area)
 };
 const uint NO_ENTRY = 0xffffffffu;

@@ -27,7 +27,7 @@ Surface surface_of(int axis, Lines lines, ivec3 place, uint key, bool upper) {
   if (front || material_double_sided != 0) {
     s.radiosity = 3.14159265 * material_emission(uv0_at(weights), uv1_at(weights));
   }
-  s.pad = 0.0;
+  s.area_m2 = 0.0;
   return s;
 }
 

@@ -52,10 +52,11 @@ class PulseGl : public GlTest, public testing::WithParamInterface<int> {
                BounceReport* report = nullptr) {
     if (surfaces_.empty()) surfaces_.assign(v.cells.size(), glm::vec4(0.0f));
     if (albedo_.empty()) albedo_.assign(v.cells.size(), glm::vec4(0.5f, 0.25f, 1.0f, 0.0f));
+    if (emission_.empty()) emission_.assign(v.cells.size(), glm::vec4(0.0f));
     gl::PassTimer timer(context().software(), false);
     PulseVolumeGl pulse(v.grid, o);
-    const BounceReport r =
-        pulse.run(upload(v), filled(v, surfaces_), filled(v, albedo_), gl::Buffer(flux), iterations, timer);
+    const BounceReport r = pulse.run(upload(v), {filled(v, surfaces_), filled(v, albedo_), filled(v, emission_)},
+                                     gl::Buffer(flux), iterations, timer);
     if (report != nullptr) *report = r;
     return pulse.radiance().download();
   }
@@ -73,7 +74,7 @@ class PulseGl : public GlTest, public testing::WithParamInterface<int> {
     return sum / std::sqrt(4.0f * pi);
   }
 
-  std::vector<glm::vec4> surfaces_, albedo_;  // by cell: mean normal and occupancy; albedo
+  std::vector<glm::vec4> surfaces_, albedo_, emission_;  // by cell: mean normal and occupancy; albedo; radiosity
   const glm::ivec3 middle_{kN / 2};
   const std::vector<glm::vec4> flux_{glm::vec4(1.0f, 2.0f, 0.0f, 0.0f)};
 };
@@ -82,6 +83,47 @@ class PulseGl : public GlTest, public testing::WithParamInterface<int> {
 double cosine_intensity(double cosine, int order) {
   const double p2 = 1.5 * cosine * cosine - 0.5;
   return (1.0 + 2.0 * cosine + (order == 2 ? 1.25 * p2 : 0.0)) / (4.0 * kPi);
+}
+
+// Injection by MAX, emission only: the cell's largest radiosity B is a light of power B h^2 about its mean normal,
+// whatever the sides' areas; a cone of 90 degrees ahead takes its share into the next cell, by hand from the lobe's
+// coefficients.
+TEST_P(PulseGl, InjectsTheLargestRadiosityOfACell) {
+  Voxels v = one_side({1.0f, 0.0f, 0.0f});
+  v.grid.cell_size_m = 0.5f;
+  const auto middle = size_t(shared::cell_index(v.grid, middle_));
+  surfaces_.assign(v.cells.size(), glm::vec4(0.0f));
+  surfaces_[middle] = {1.0f, 0.0f, 0.0f, 1.0f};
+  surfaces_[middle + 1] = {0.0f, 0.0f, 0.0f,
+                           1.0f};  // what arrives ahead is read there: it has no normal, and turns back
+  emission_.assign(v.cells.size(), glm::vec4(0.0f));
+  emission_[middle] = {8.0f, 4.0f, 0.0f, 0.0f};
+  SchemeOptions o = options(Scheme::gaitatzes2010);
+  o.injection = SchemeOptions::Injection::max;
+  BounceReport report;
+  const Radiance sh = run(v, o, {glm::vec4(0.0f)}, 1, &report);
+  EXPECT_NEAR(report.sent.x, 8.0f * 0.25f, 1e-6f);
+  EXPECT_NEAR(report.sent.y, 4.0f * 0.25f, 1e-6f);
+  // The 90-degree cone, c = cos 45 degrees: half the lobe's isotropic part 1 - c, and of P_1 and P_2 what theory.md
+  // says.
+  const double c = std::sqrt(0.5), share_0 = 0.5 * (1.0 - c);
+  const double share_1 = 3.0 * (2.0 / 3.0) * 0.25 * (1.0 - c * c);
+  const double share_2 = GetParam() == 2 ? 5.0 * 0.25 * 0.25 * c * (1.0 - c * c) : 0.0;
+  EXPECT_NEAR(power(v, sh, middle_ + glm::ivec3(1, 0, 0)), 2.0 * (share_0 + share_1 + share_2), 1e-5);
+}
+
+// Sides' flux over their areas counts in the cell that holds the surface: here the one behind the face.
+TEST_P(PulseGl, InjectsWhatSidesReflectByMax) {
+  const Voxels v =
+      one_side({1.0f, 0.0f, 0.0f});  // on the lower x face of the middle: its surface lies in the cell below
+  surfaces_.assign(v.cells.size(), glm::vec4(0.0f));
+  surfaces_[size_t(shared::cell_index(v.grid, middle_ - glm::ivec3(1, 0, 0)))] = {1.0f, 0.0f, 0.0f, 1.0f};
+  SchemeOptions o = options(Scheme::gaitatzes2010);
+  o.injection = SchemeOptions::Injection::max;
+  BounceReport report;
+  run(v, o, flux_, 1, &report);
+  EXPECT_NEAR(report.sent.x, 1.0f, 1e-6f);
+  EXPECT_NEAR(report.sent.y, 2.0f, 1e-6f);
 }
 
 // One pass from a cosine lobe along +x: what the cell in front and a cell beside get, from the solid angles.

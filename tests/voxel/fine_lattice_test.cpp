@@ -182,7 +182,7 @@ TEST_F(FineLattice, SinglePassSeesTheSame) {
   shared::Grid slab = unit_grid(16);
   slab.cells = {16, 9, 13};
   for (const shared::Grid& grid : {unit_grid(23), slab}) {
-    SlicedVoxelization sliced(grid), single(grid, VoxelizationMethod::single_pass);
+    SlicedVoxelization sliced(grid), single(grid, {.method = VoxelizationMethod::single_pass});
     for (const bool alpha : {false, true}) {
       const Scene scene = clutter(alpha);
       expect_same(voxelize(context(), sliced, scene), voxelize(context(), single, scene));
@@ -190,7 +190,8 @@ TEST_F(FineLattice, SinglePassSeesTheSame) {
   }
 }
 
-TEST_F(FineLattice, ThreeInterleavedRunsAreAFullOne) {
+// An interleaved run finds the sides of one axis and counts their areas, and leaves the others' as they were.
+TEST_F(FineLattice, InterleavedRunsBecomeAFullOne) {
   const Grid grid = unit_grid(16);
   gl::PassTimer timer(context().software(), false);
   SlicedVoxelization interleaved(grid);
@@ -208,7 +209,36 @@ TEST_F(FineLattice, ThreeInterleavedRunsAreAFullOne) {
     EXPECT_GT(v.sides.size(), 1000u);
     for (const Side& side : v.sides) ASSERT_TRUE(std::isfinite(side.area_m2) && side.coverage > 0.0f);
   }
-  expect_same(downloaded(interleaved.voxels()), voxelize(context(), moved, grid));
+  const Voxels full = voxelize(context(), moved, grid);
+  ASSERT_EQ(downloaded(interleaved.voxels()).sides.size(), full.sides.size());
+  for (int axis = 0; axis < 3; ++axis) interleaved.run(after, timer, axis);  // areas are shared by sides of all axes
+  expect_same(downloaded(interleaved.voxels()), full);
+}
+
+TEST_F(FineLattice, AnInterleavedRunLeavesOtherAxesAlone) {
+  const Grid grid = unit_grid(16);
+  gl::PassTimer timer(context().software(), false);
+  SlicedVoxelization interleaved(grid, {.interleave = true});
+  interleaved.run(gl::SceneBuffers(clutter(true)), timer);  // the first run is a full one
+  const Voxels before = downloaded(interleaved.voxels());
+  Scene moved = clutter(true);
+  for (Mesh& mesh : moved.meshes) {
+    for (glm::vec3& p : mesh.positions) p = rotation({0, 1, 0}, 7.0f) * p + glm::vec3(0.02f, 0.05f, 0.0f);
+  }
+  interleaved.run(gl::SceneBuffers(moved), timer);  // x was the full one's, y is next
+  const Voxels after = downloaded(interleaved.voxels());
+  const auto along = [](const Voxels& v, int axis) {
+    std::vector<Side> sides;
+    for (const Side& side : v.sides) {
+      if (shared::face_axis(side.face) == axis) sides.push_back(side);
+    }
+    return sides;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<Side> a = along(before, axis), b = along(after, axis);
+    const bool same = a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Side)) == 0;
+    EXPECT_EQ(same, axis != 1) << axis;
+  }
 }
 
 // A list that is too short leaves sides out, but no cell looks beyond it and nothing opens.

@@ -254,6 +254,7 @@ size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm
 }
 
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
+  refuse_on_cpu(options);
   if (options.memory_limit) refuse_above_limit(options, volume_bytes_on_cpu(scene, options, size), "CPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnCpu>(scene, options, size);
   return std::make_unique<PulseOnCpu>(scene, options, size);

@@ -28,7 +28,7 @@ class LitVoxels {
   LitVoxels(const Scene& scene, const VolumeOptions& options)
       : scene_(scene),
         options_(options),
-        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
+        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells), options.voxelization),
         emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
 
   /// @param emission_apart  SideFluxGl::inject_emitters.
@@ -140,10 +140,13 @@ class PulseOnGpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
            const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
-    lit_.run(buffers, maps, false, timer);
+    // By MAX, emission comes with the cells.
+    const bool by_max = options_.scheme.injection == SchemeOptions::Injection::max;
+    lit_.run(buffers, maps, by_max, timer);
     cells_.run(buffers, timer);
-    bounce_report_ = pulse_.run(lit_.voxels(), cells_.normal_occupancy(), cells_.albedo(), lit_.flux().punctual(),
-                                options_.iterations.value_or(VolumeOptions::kPulseIterations), timer);
+    bounce_report_ =
+        pulse_.run(lit_.voxels(), {cells_.normal_occupancy(), cells_.albedo(), cells_.emission()},
+                   lit_.flux().punctual(), options_.iterations.value_or(VolumeOptions::kPulseIterations), timer);
     const bool occupied_only = options_.scheme.scheme == Scheme::gaitatzes2010;
     gather_.run(gbuffer, lit_.voxels(), pulse_.radiance(), occupied_only ? &cells_.normal_occupancy() : nullptr, timer);
   }

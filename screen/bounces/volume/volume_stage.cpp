@@ -16,6 +16,8 @@ namespace {
 using enum LightPath;
 
 constexpr const char* ORDINATES[] = {"step", "characteristic"};
+constexpr const char* VOXELIZATIONS[] = {"sliced", "single_pass"};
+constexpr const char* INJECTIONS[] = {"flux", "max"};
 constexpr const char* SOLVERS[] = {"plain", "conjugate_gradients"};
 
 /// BounceRules::Solver without its `automatic`, which is what nobody's choice means.
@@ -48,6 +50,17 @@ constexpr Parameter PARAMETERS[] = {
          "conservative: carries the end of each order on a grid of half as many cells, on the CPU only",
          "on there, off on the GPU"},
         [](VolumeOptions& o) -> auto& { return o.scheme.coarse_start; }),
+    choice<VolumeOptions>(
+        {"voxel.method", "", "the GPU's voxelization: along three axes, or in one pass"}, VOXELIZATIONS,
+        [](VolumeOptions& o) -> auto& { return o.voxelization.method; }),
+    yes_no<VolumeOptions>(
+        {"voxel.interleave", "", "the GPU's voxelization slices along one axis a frame, in turn"},
+        [](VolumeOptions& o) -> auto& { return o.voxelization.interleave; }),
+    choice<VolumeOptions>(
+        {"gaitatzes.inject", "",
+         "gaitatzes2010: starts from the flux of sides, or from each occupied cell's largest "
+         "radiosity, as printed"},
+        INJECTIONS, [](VolumeOptions& o) -> auto& { return o.scheme.injection; }),
     yes_no<VolumeOptions>(
         {"gaitatzes.half_albedo", "", "gaitatzes2010: takes 0.5 for every albedo after the first bounce"},
         [](VolumeOptions& o) -> auto& { return o.scheme.constant_albedo; }),

@@ -51,6 +51,42 @@ TEST_F(FrameVolumeGl, CoarseGridIsRefusedWhereThereIsNone) {
   }
 }
 
+// Injection by MAX puts the same into the pulse on both backends.
+TEST_F(FrameVolumeGl, InjectionByMaxIsTheSameOnBoth) {
+  for (const char* name : {"cornell", "emissive"}) {
+    const Scene scene = load_scene(source_dir() / "data" / (std::string(name) + ".glb"));
+    glm::vec3 sent[2], left[2];
+    for (const screen::Backend backend : {screen::Backend::gpu, screen::Backend::cpu}) {
+      screen::FrameOptions o = options(Scheme::gaitatzes2010, backend);
+      o.volume.scheme.injection = SchemeOptions::Injection::max;
+      const BounceReport bounces = report(scene, o).bounces;
+      sent[backend == screen::Backend::cpu] = bounces.sent;
+      left[backend == screen::Backend::cpu] = bounces.left;
+    }
+    for (int band = 0; band < 3; ++band) {
+      EXPECT_GT(sent[0][band], 0.0f);
+      // Light comes by maps on one and by rays on the other, and the largest of a cell's sides is what differs most.
+      EXPECT_NEAR(sent[1][band] / sent[0][band], 1.0f, 5e-3f) << name;
+      EXPECT_NEAR(left[1][band] / left[0][band], 1.0f, 5e-3f) << name;
+    }
+  }
+}
+
+// What the GPU's voxelization is asked for is done, and the CPU, which has none of it, says so.
+TEST_F(FrameVolumeGl, VoxelizationIsAsAskedFor) {
+  const screen::VolumeReport sliced = report(scene_, options(Scheme::ordinates, screen::Backend::gpu));
+  for (const VoxelizationOptions asked :
+       {VoxelizationOptions{.method = VoxelizationMethod::single_pass}, VoxelizationOptions{.interleave = true}}) {
+    screen::FrameOptions o = options(Scheme::ordinates, screen::Backend::gpu);
+    o.volume.voxelization = asked;
+    const screen::VolumeReport other = report(scene_, o);
+    EXPECT_EQ(other.sides, sliced.sides);
+    EXPECT_EQ(other.injected, sliced.injected);
+    o.backend = screen::Backend::cpu;
+    EXPECT_THROW(screen::Frame(scene_, o), Error);
+  }
+}
+
 // What --memory-limit is held against is what is then taken, whatever the scheme, within a tenth.
 TEST_F(FrameVolumeGl, MemoryIsAsPredicted) {
   struct Case {
