@@ -26,7 +26,7 @@ namespace {
 
 constexpr float largest_half = 65504.0f;
 constexpr std::int64_t largest_edge = 65536;
-constexpr std::int64_t most_values = std::int64_t(1) << 31;  // pixels times channels: 8 GiB
+constexpr std::int64_t max_values = std::int64_t(1) << 31;  // pixels times channels: 8 GiB
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw Error(ExitCode::bad_input, fmt::format("{}: {}", path.string(), why));
@@ -47,7 +47,7 @@ void check_header(const std::filesystem::path& path, const Imf::Header& header) 
   const auto channels = std::int64_t(channel_count(header.channels()));
   if (channels == 0) refuse(path, "the EXR file has no channels");
   if (width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
-      width * height > most_values / channels) {
+      width * height > max_values / channels) {
     refuse(path, fmt::format("an EXR of {}x{} pixels and {} channels is not supported", width, height, channels));
   }
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {

@@ -48,8 +48,8 @@ ReflectiveShadowLayer directional_layer(glm::vec3 direction, int resolution, glm
   const glm::vec3 middle = 0.5f * (bounds_min + bounds_max);
   const glm::vec3 half = 0.5f * (bounds_max - bounds_min);
   // A flat or empty scene still gets a box with volume.
-  const float least = std::max({1e-3f * glm::length(half), 1e-6f * glm::length(middle), 1e-20f});
-  const auto half_width = [&](glm::vec3 axis) { return std::max(glm::dot(glm::abs(axis), half), least); };
+  const float min_half_width = std::max({1e-3f * glm::length(half), 1e-6f * glm::length(middle), 1e-20f});
+  const auto half_width = [&](glm::vec3 axis) { return std::max(glm::dot(glm::abs(axis), half), min_half_width); };
   layer.extent_x = half_width(layer.right) * margin_factor(resolution);
   layer.extent_y = half_width(layer.up) * margin_factor(resolution);
   const float reach = half_width(direction) * 1.01f;  // nothing is clipped for a rounding error

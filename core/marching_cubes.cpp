@@ -15,8 +15,8 @@ namespace {
 // coordinates i and j.
 
 constexpr int kEdges = 12;
-constexpr int kMostTriangles = 5;  // of a cell
-constexpr float kLeastFromNode = 0.01f;
+constexpr int kMaxTriangles = 5;  // of a cell
+constexpr float kMinDistanceToNode = 0.01f;
 constexpr int kRefinements = 4;  // of a vertex on its edge, by false position
 
 constexpr int bit(int corner, int axis) { return corner >> axis & 1; }
@@ -82,7 +82,7 @@ bool fan_stays_inside(const Loop& loop, int apex) {
 
 /// Triangles of one of the 256 cells, as edges.
 struct CellTriangles {
-  std::array<std::array<std::uint8_t, 3>, kMostTriangles> edges{};
+  std::array<std::array<std::uint8_t, 3>, kMaxTriangles> edges{};
   int count = 0;
 
   void add_loop(const Loop& loop) {
@@ -184,7 +184,7 @@ class Mesher {
       part = low + (high - low) * at_low / (at_low - at_high);
     }
     glm::vec3 p = start;
-    p[axis] += std::clamp(part, kLeastFromNode, 1.0f - kLeastFromNode) * samples_.spacing_m;
+    p[axis] += std::clamp(part, kMinDistanceToNode, 1.0f - kMinDistanceToNode) * samples_.spacing_m;
     return p;
   }
 

@@ -19,7 +19,7 @@ namespace volgi {
 namespace {
 
 constexpr double farthest_m = 1e12;                  // squares and cubes of it are still floats
-constexpr size_t most_vertices = size_t(100) << 20;  // of all nodes together
+constexpr size_t max_vertices = size_t(100) << 20;  // of all nodes together
 
 WorldBox triangle_bounds(const std::vector<gltf::PlacedMesh>& meshes) {
   WorldBox box;
@@ -77,9 +77,9 @@ SceneFile::Data::Data(const gltf::Document& document) : path(document.path) {
       decoded[size_t(mesh)] = true;
     }
     for (const gltf::Primitive& p : primitives) vertices += p.positions.size() + p.triangles.size();
-    if (vertices > most_vertices) {
+    if (vertices > max_vertices) {
       throw Error(ExitCode::over_limit, fmt::format("{}: more than {} vertices and triangles in all nodes together",
-                                                    path.string(), most_vertices));
+                                                    path.string(), max_vertices));
     }
   }
 }

@@ -103,9 +103,9 @@ float largest_albedo(const Scene& scene) {
   std::vector<glm::vec3> of_material;
   of_material.reserve(scene.materials.size());
   for (const Material& m : scene.materials) {
-    const float least_metallic = m.metallic_factor * texture_extreme(scene, m.metallic, false, false).z;
+    const float min_metallic = m.metallic_factor * texture_extreme(scene, m.metallic, false, false).z;
     const glm::vec3 texture_maximum(texture_extreme(scene, m.base_color, true, true));
-    of_material.push_back(glm::vec3(m.base_color_factor) * texture_maximum * (1.0f - least_metallic));
+    of_material.push_back(glm::vec3(m.base_color_factor) * texture_maximum * (1.0f - min_metallic));
   }
   float largest = 0.0f;
   for (const Mesh& mesh : scene.meshes) {

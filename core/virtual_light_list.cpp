@@ -21,7 +21,7 @@ namespace volgi {
 namespace {
 
 constexpr const char* kFormat = "volgi virtual lights 1";
-constexpr size_t kMostLights = size_t{1} << 22;  // 200 MB of them; a renderer's list has thousands
+constexpr size_t kMaxLights = size_t{1} << 22;  // 200 MB of them; a renderer's list has thousands
 constexpr double kUnitTolerance = 1e-4;          // of a normal's length: a float's rounding is 1e-7, a half's 5e-4
 constexpr std::array<const char*, 3> kKinds = {"reflected", "emitted", "negative"};  // VIRTUAL_LIGHT_*
 
@@ -70,7 +70,7 @@ class ListReader : public nlohmann::json_sax<nlohmann::json> {
 
   bool start_object(std::size_t) override {
     if (depth_ == 2 && in_lights_) {
-      if (list_.lights.size() == kMostLights) refuse(fmt::format("more than {} lights", kMostLights));
+      if (list_.lights.size() == kMaxLights) refuse(fmt::format("more than {} lights", kMaxLights));
       list_.lights.emplace_back();
       seen_.fill(false);
     } else if (depth_ != 0) {

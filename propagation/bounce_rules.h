@@ -16,12 +16,12 @@ struct BounceRules {
   /// rho_max: the scene's largest albedo.
   float largest_albedo = 0.5f;
   /// Conjugate gradients over bounces instead of one order after another. Automatic: where the scheme is linear and all
-  /// bounces are asked for. A usage error where it is not, and with `bounces` and `passes_a_run`.
+  /// bounces are asked for. A usage error where it is not, and with `bounces` and `passes_per_run`.
   enum class Solver { automatic, plain, conjugate_gradients };
   Solver solver = Solver::automatic;
   /// Amortised: at most this many passes over the volume a run, one bounce after another, P <- K(e + fP), from the last
   /// run's answer (black at first). None: until done. A usage error together with `bounces` and `iterations`.
-  std::optional<int> passes_a_run;
+  std::optional<int> passes_per_run;
   /// Starts from the last run's answer where there is one of as many sides and all bounces are asked for. The answer is
   /// that of a cold start to kTolerance in a linear scheme. Others then solve P = K(e + fP), all light in one pulse,
   /// which is not the sum of their orders.
@@ -30,14 +30,14 @@ struct BounceRules {
   /// Share of the light that stopping early may cost: 0.2 %.
   static constexpr float kTolerance = 2e-3f;
   /// An albedo of 1 would never end: what is left after 1 % absorption a bounce is asked for then.
-  static constexpr float kLeastAbsorption = 0.01f;
+  static constexpr float kMinAbsorption = 0.01f;
   /// 0.2 % at the largest albedo that counts, 0.99, needs 1,300.
-  static constexpr int kMostOrders = 5000;
+  static constexpr int kMaxOrders = 5000;
   /// Conjugate gradients take no bounce to lose less than this part (in the mean over all sides), or a closed white
-  /// room would have no answer; and no more passes than that can need, sqrt(1/kLeastLoss) / 2 · ln(2 / (kTolerance /
+  /// room would have no answer; and no more passes than that can need, sqrt(1/kMinLoss) / 2 · ln(2 / (kTolerance /
   /// 100)).
-  static constexpr double kLeastLoss = 1e-4;
-  static constexpr int kMostConjugate = 600;
+  static constexpr double kMinLoss = 1e-4;
+  static constexpr int kMaxConjugatePasses = 600;
 
   float absorption() const;
   /// All orders in flight together: what orders there are cannot be told apart afterwards.
@@ -55,8 +55,8 @@ struct BounceRules {
   void check(bool linear) const;
   bool conjugate_gradients(bool linear) const;
   /// Whether the last run's answer may be the start.
-  bool continues() const { return passes_a_run || (warm_start && !bounces && !iterations); }
-  /// Amortised, with emission: one order in so many renews its first arrival, the others carry bounces. Once a run
+  bool continues() const { return passes_per_run || (warm_start && !bounces && !iterations); }
+  /// Amortised, with emission: one order in a number of them renews its first arrival, the others carry bounces. Once a run
   /// where an order is one pass.
   int arrival_cycle(bool iterative) const;
 };
@@ -72,6 +72,6 @@ struct BounceReport {
 };
 
 /// Says so on stderr when the estimate after the first order exceeds a minute.
-void announce_long_run(double seconds_an_order, const BounceRules& rules);
+void announce_long_run(double seconds_per_order, const BounceRules& rules);
 
 }  // namespace volgi

@@ -9,7 +9,7 @@ namespace volgi {
 
 using shared::BounceState;
 
-static_assert(float(BounceRules::kLeastLoss) == BOUNCE_LEAST_LOSS);
+static_assert(float(BounceRules::kMinLoss) == BOUNCE_MIN_LOSS);
 
 namespace {
 
@@ -21,7 +21,7 @@ BounceSolverGl::BounceSolverGl()
     : source_kernel_(gl::Program::compute("propagation/solver_source.comp.glsl")),
       send_kernel_(gl::Program::compute("propagation/solver_send.comp.glsl")),
       publish_kernel_(gl::Program::compute("propagation/solver_publish.comp.glsl")),
-      forget_kernel_(gl::Program::compute("propagation/solver_forget.comp.glsl")),
+      reset_kernel_(gl::Program::compute("propagation/solver_reset.comp.glsl")),
       start_kernel_(gl::Program::compute("propagation/conjugate_start.comp.glsl")),
       curvature_kernel_(gl::Program::compute("propagation/conjugate_curvature.comp.glsl")),
       step_kernel_(gl::Program::compute("propagation/conjugate_step.comp.glsl")),
@@ -74,7 +74,7 @@ void BounceSolverGl::add_up(int sums) {
 void BounceSolverGl::forget_other_sides(const VoxelGridGl& voxels, const Powers& powers) {
   powers.direct.bind_storage(13);
   last_count_.bind_storage(14);
-  run(forget_kernel_, voxels, powers);
+  run(reset_kernel_, voxels, powers);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(voxels.side_count.id(), last_count_.id(), 0, 0, sizeof(std::uint32_t));
 }

@@ -49,7 +49,7 @@ class BounceSolverGl {
   void run(const gl::Program& kernel, const VoxelGridGl& voxels, const Powers& powers);
   void add_up(int sums);
 
-  gl::Program source_kernel_, send_kernel_, publish_kernel_, forget_kernel_;
+  gl::Program source_kernel_, send_kernel_, publish_kernel_, reset_kernel_;
   gl::Program start_kernel_, curvature_kernel_, step_kernel_, direction_kernel_, end_kernel_, scalars_kernel_;
   gl::Buffer source_, residual_, partials_, state_, last_count_;
   gl::Readback readback_;

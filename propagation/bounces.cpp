@@ -29,8 +29,8 @@ void Bounces::make_room(const Run& run) {
     source_power_ = glm::dvec3(0.0);
   }
   // Amortised runs keep the arrival of emission, and what is in flight.
-  if (!continues || !run.rules.passes_a_run || !run.has_emission) received_direct_.assign(count, glm::vec4(0.0f));
-  if (!continues || !run.rules.passes_a_run) {
+  if (!continues || !run.rules.passes_per_run || !run.has_emission) received_direct_.assign(count, glm::vec4(0.0f));
+  if (!continues || !run.rules.passes_per_run) {
     in_flight_ = false;
     orders_begun_ = 0;
     received_.assign(count, glm::vec4(0.0f));
@@ -52,19 +52,19 @@ BounceReport Bounces::run(const VoxelGrid& voxels, const SideFlux& flux, bool ha
   const Run run{voxels, flux, has_emission, rules};
   make_room(run);
   BounceReport report;
-  if (rules.passes_a_run) {
+  if (rules.passes_per_run) {
     amortised(run, report);
     return report;
   }
-  const int most = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : BounceRules::kMostOrders;
-  if (has_emission && most > 0) arrival_of_emission(run, report);
+  const int limit = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : BounceRules::kMaxOrders;
+  if (has_emission && limit > 0) arrival_of_emission(run, report);
   const glm::vec4 share = set_source(run);
   if (rules.conjugate_gradients(transport_->linear())) {
     solve_conjugate(run, share, report);
   } else if (rules.continues()) {
     renewals(run, share, report);
   } else {
-    orders(run, most, report);
+    orders(run, limit, report);
   }
   return report;
 }
@@ -114,12 +114,12 @@ glm::vec4 Bounces::set_source(const Run& run) {
 }
 
 /// One order after another, from black: the series K e + K f K e + ...
-void Bounces::orders(const Run& run, int most, BounceReport& report) {
+void Bounces::orders(const Run& run, int limit, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const bool together = transport_->iterative() && rules.together();
-  if (rules.iterations && !transport_->iterative()) most = std::min(most, *rules.iterations);
+  if (rules.iterations && !transport_->iterative()) limit = std::min(limit, *rules.iterations);
   sent_ = source_;
-  while (report.orders < most) {
+  while (report.orders < limit) {
     const glm::vec3 sent(total(sent_));
     const bool ended = !rules.bounces && report.orders > 0 && rules.orders_ended(sent, report.sent);
     if (sent == glm::vec3(0.0f) || ended) {
@@ -157,7 +157,7 @@ void Bounces::renewals(const Run& run, glm::vec4 share, BounceReport& report) {
   for (glm::vec4& power : received_indirect_) power *= share;
   const glm::vec3 emission = report.sent;
   const glm::vec3 emission_left = report.left;
-  for (int order = 0; order < BounceRules::kMostOrders && !report.converged; ++order) {
+  for (int order = 0; order < BounceRules::kMaxOrders && !report.converged; ++order) {
     send_all();
     report.left = emission_left;
     report.sent = emission + glm::vec3(total(sent_));
@@ -184,12 +184,12 @@ void Bounces::begin_order(const Run& run) {
 
 /// As many passes as there may be; an order that is not at its end then goes on in the next run.
 void Bounces::amortised(const Run& run, BounceReport& report) {
-  const int most = *run.rules.passes_a_run;
-  while (report.passes < most) {
+  const int limit = *run.rules.passes_per_run;
+  while (report.passes < limit) {
     if (!in_flight_) begin_order(run);
     const int before = report.passes;
     BounceReport carried;
-    const bool ended = transport_->advance(received_, most - before, run.rules, carried);
+    const bool ended = transport_->advance(received_, limit - before, run.rules, carried);
     report.passes += std::max(carried.passes, 1);
     if (!ended) continue;
     in_flight_ = false;

@@ -48,7 +48,7 @@ class Bounces {
   void send_emission(const Run& run);
   void arrival_of_emission(const Run& run, BounceReport& report);
   glm::vec4 set_source(const Run& run);
-  void orders(const Run& run, int most, BounceReport& report);
+  void orders(const Run& run, int limit, BounceReport& report);
   void send_all();
   glm::dvec3 publish();
   void renewals(const Run& run, glm::vec4 share, BounceReport& report);

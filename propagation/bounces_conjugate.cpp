@@ -52,7 +52,7 @@ glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
 void Bounces::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const size_t count = source_.size();
-  const int most = std::min(rules.iterations.value_or(BounceRules::kMostConjugate), BounceRules::kMostConjugate);
+  const int limit = std::min(rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
   Powers& p = received_indirect_;
   report.conjugate_gradients = true;
 
@@ -81,14 +81,14 @@ void Bounces::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& rep
                               return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]);
                             }));
     report.converged = rules.orders_ended(next, report.sent);
-    if (report.converged || pass == most) {
+    if (report.converged || pass == limit) {
       report.left += next;
       break;
     }
     carry(d, rules, report);
     const Powers& y = received_;
-    // No bounce is taken to lose less than kLeastLoss: a closed white room has no answer.
-    const glm::dvec3 bend = glm::max(curvature(response_, d, y), BounceRules::kLeastLoss * product(response_, d, d));
+    // No bounce is taken to lose less than kMinLoss: a closed white room has no answer.
+    const glm::dvec3 bend = glm::max(curvature(response_, d, y), BounceRules::kMinLoss * product(response_, d, d));
     const glm::vec4 alpha(quotient(qq, bend), 0.0f);
     for_each_side(count, [&](size_t i) {
       p[i] += alpha * y[i];

@@ -37,7 +37,7 @@ bool BouncesGl::needs_solver(const BounceRules& rules, bool linear) {
 }
 
 void BouncesGl::make_room(const Run& run) {
-  const bool amortised = run.rules.passes_a_run.has_value();
+  const bool amortised = run.rules.passes_per_run.has_value();
   bool continues = run.rules.continues();
   if (capacity_ != run.voxels.side_capacity) {
     capacity_ = run.voxels.side_capacity;
@@ -101,7 +101,7 @@ BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, b
   const Run run{voxels, flux, has_emission, rules};
   make_room(run);
   BounceReport report;
-  if (rules.passes_a_run) {
+  if (rules.passes_per_run) {
     amortised(run, report);
   } else if (rules.conjugate_gradients(linear())) {
     solve_conjugate(run, report);
@@ -116,7 +116,7 @@ BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, b
 /// One order after another, from black: the series K e + K f K e + ...
 void BouncesGl::orders(const Run& run, BounceReport& report) {
   const BounceRules& rules = run.rules;
-  int orders = rules.bounces ? *rules.bounces + (run.has_emission ? 1 : 0) : BounceRules::kMostOrders;
+  int orders = rules.bounces ? *rules.bounces + (run.has_emission ? 1 : 0) : BounceRules::kMaxOrders;
   if (rules.iterations && !transport_->iterative()) orders = std::min(orders, *rules.iterations);
   // received_ is zero here: this only makes the first order's sources into what sides send.
   next_order(run.voxels, received_indirect_, run.has_emission ? &run.flux.emitted() : &run.flux.punctual(), false);
@@ -165,7 +165,7 @@ void BouncesGl::renewals(const Run& run, BounceReport& report) {
   const glm::vec3 arrival_left = report.left;
   glm::vec3 order_left(0.0f);
   const auto start = std::chrono::steady_clock::now();
-  for (int order = 0; order < BounceRules::kMostOrders; ++order) {
+  for (int order = 0; order < BounceRules::kMaxOrders; ++order) {
     BounceReport carried;
     transport_->carry(run.voxels, sent_, received_, run.rules, carried);
     report.passes += carried.passes;
@@ -186,7 +186,7 @@ void BouncesGl::renewals(const Run& run, BounceReport& report) {
 }
 
 void BouncesGl::solve_conjugate(const Run& run, BounceReport& report) {
-  const int most = std::min(run.rules.iterations.value_or(BounceRules::kMostConjugate), BounceRules::kMostConjugate);
+  const int limit = std::min(run.rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
   report.conjugate_gradients = true;
   if (run.has_emission) arrival_of_emission(run, report);
   solver_->set_source(run.voxels, powers(), run.flux.punctual());
@@ -197,12 +197,12 @@ void BouncesGl::solve_conjugate(const Run& run, BounceReport& report) {
   solver_->push_sums();
   const glm::vec3 arrival = run.has_emission ? pop_sent() : glm::vec3(0.0f);
   for (int pass = 1;; ++pass) {
-    if (pass < most) transport_->carry(run.voxels, sent_, received_, run.rules, report);
+    if (pass < limit) transport_->carry(run.voxels, sent_, received_, run.rules, report);
     const BounceSolverGl::Sums sums = solver_->pop_sums();
     report.sent = arrival + sums.total_sent;
     report.left = sums.next_sent;
     report.converged = run.rules.orders_ended(sums.next_sent, report.sent);
-    if (report.converged || pass == most) break;
+    if (report.converged || pass == limit) break;
     report.orders += 1;
     solver_->step(run.voxels, powers());
     solver_->push_sums();
@@ -225,9 +225,9 @@ void BouncesGl::begin_order(const Run& run) {
   in_flight_ = true;
 }
 
-bool BouncesGl::advance_order(const Run& run, int most_passes, BounceReport& report) {
+bool BouncesGl::advance_order(const Run& run, int max_passes, BounceReport& report) {
   if (ResumableGl* resumable = transport_->resumable()) {
-    return resumable->advance_order(run.voxels, received_, most_passes, run.rules, report);
+    return resumable->advance_order(run.voxels, received_, max_passes, run.rules, report);
   }
   transport_->carry(run.voxels, sent_, received_, run.rules, report);
   return true;
@@ -240,12 +240,12 @@ void BouncesGl::amortised(const Run& run, BounceReport& report) {
                 "amortised bounces: this scheme cannot interrupt an order on the GPU; use --scheme ordinates or "
                 "--backend cpu");
   }
-  const int most = *run.rules.passes_a_run;
+  const int limit = *run.rules.passes_per_run;
   bool published = false;
-  while (report.passes < most) {
+  while (report.passes < limit) {
     if (!in_flight_) begin_order(run);
     BounceReport carried;
-    const bool ended = advance_order(run, most - report.passes, carried);
+    const bool ended = advance_order(run, limit - report.passes, carried);
     report.passes += std::max(carried.passes, 1);
     if (!ended) continue;
     in_flight_ = false;
@@ -270,7 +270,7 @@ void BouncesGl::amortised(const Run& run, BounceReport& report) {
 }
 
 gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) const {
-  const gl::Program kernel = gl::Program::compute("propagation/sent_in_all.comp.glsl");
+  const gl::Program kernel = gl::Program::compute("propagation/total_sent_power.comp.glsl");
   gl::Buffer all(sizeof(glm::vec4) * size_t(capacity_));
   all.clear();
   voxels.bind();

@@ -50,7 +50,7 @@ class BouncesGl {
   void renewals(const Run& run, BounceReport& report);
   void solve_conjugate(const Run& run, BounceReport& report);
   void begin_order(const Run& run);
-  bool advance_order(const Run& run, int most_passes, BounceReport& report);
+  bool advance_order(const Run& run, int max_passes, BounceReport& report);
   void amortised(const Run& run, BounceReport& report);
   bool linear() const { return !transport_->iterative(); }
   BounceSolverGl::Powers powers() const { return {received_, sent_, received_indirect_, received_direct_}; }

@@ -224,7 +224,7 @@ class Stages {
     scheme_.coarse_start = false;
     rules_.solver = BounceRules::Solver::plain;
     rules_.warm_start = false;
-    rules_.passes_a_run.reset();
+    rules_.passes_per_run.reset();
   }
 
   void run(const std::vector<int>& passes, std::vector<CrosscheckRow>& rows) {

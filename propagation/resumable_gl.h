@@ -5,17 +5,17 @@
 namespace volgi {
 
 /// What a TransportGl whose orders take many passes is, too, when an order can stop between two of them and go on
-/// later: amortised runs (BounceRules::passes_a_run) ask for it. Twin of Transport::begin and advance.
+/// later: amortised runs (BounceRules::passes_per_run) ask for it. Twin of Transport::begin and advance.
 class ResumableGl {
  public:
   virtual ~ResumableGl() = default;
   /// Starts an order. @param sent  power per side (vec4, rgb) [W], >= 0.
   virtual void begin_order(const VoxelGridGl& voxels, const gl::Buffer& sent) = 0;
-  /// Carries it on by at most `most_passes` passes.
+  /// Carries it on by at most `max_passes` passes.
   /// @param received  power per side (vec4, rgb) [W], added to.
   /// @param report    passes are added, and, when the order ends, the power that was left in flight.
   /// @return whether the order has ended.
-  virtual bool advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int most_passes,
+  virtual bool advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int max_passes,
                              const BounceRules& rules, BounceReport& report) = 0;
 };
 

@@ -8,7 +8,7 @@ namespace volgi {
 
 namespace {
 
-constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
+constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
 
 using Around = std::bitset<27>;  // the 3^3 cells around one
 
@@ -78,7 +78,7 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
       const glm::uvec2 own = voxels.cell_sides(centre + around_offset(k));
       const size_t last = own.x + shared::count_bits(own.y & 63u);
       for (size_t s = own.x; s < last; ++s) {
-        if (glm::dot(sides[s].normal, sides[i].normal) < kLikeNormals) continue;
+        if (glm::dot(sides[s].normal, sides[i].normal) < kSimilarNormalCosine) continue;
         first.add(direct[s], weight_of(sides[s]));
         rest.add(indirect[s], weight_of(sides[s]));
       }

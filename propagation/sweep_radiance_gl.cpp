@@ -8,7 +8,7 @@ namespace volgi {
 
 namespace {
 
-constexpr int kColumnsARow = 1024;  // sweep_radiance.comp.glsl
+constexpr int kColumnsPerRow = 1024;  // sweep_radiance.comp.glsl
 
 int texels_of(const OrdinateSet& set) { return (3 * int(set.directions.size()) + 3) / 4; }
 
@@ -66,10 +66,10 @@ void SweepRadianceGl::list_diagonals() {
     }
   }
   first_cell_.push_back(int(columns.size()));
-  const int height = int(columns.size() / kColumnsARow) + 1;
-  columns.resize(size_t(height) * kColumnsARow);
-  column_map_ = gl::Texture::make_2d(GL_R32UI, kColumnsARow, height);
-  glTextureSubImage2D(column_map_.id(), 0, 0, 0, kColumnsARow, height, GL_RED_INTEGER, GL_UNSIGNED_INT, columns.data());
+  const int height = int(columns.size() / kColumnsPerRow) + 1;
+  columns.resize(size_t(height) * kColumnsPerRow);
+  column_map_ = gl::Texture::make_2d(GL_R32UI, kColumnsPerRow, height);
+  glTextureSubImage2D(column_map_.id(), 0, 0, 0, kColumnsPerRow, height, GL_RED_INTEGER, GL_UNSIGNED_INT, columns.data());
 }
 
 RadianceVolumeGl SweepRadianceGl::run(const gl::Texture& cell_word, const gl::Texture& side_light) {

@@ -17,11 +17,11 @@ class Transport {
   virtual ~Transport() = default;
   /// Starts an order. @param sent  power per side (rgb) [W], >= 0; w is not looked at. Need not outlive the call.
   virtual void begin(std::span<const glm::vec4> sent) = 0;
-  /// Carries the order on, by at most `most_passes` passes over the volume.
+  /// Carries the order on, by at most `max_passes` passes over the volume.
   /// @param received  power per side (rgb) [W], added to; w stays.
   /// @param report    passes are added, and, when the order ends, the power that was left in flight.
   /// @return whether the order has ended: nothing in flight, little enough by `rules`, or rules.iterations reached.
-  virtual bool advance(std::span<glm::vec4> received, int most_passes, const BounceRules& rules,
+  virtual bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules,
                        BounceReport& report) = 0;
   /// One whole order.
   void carry(std::span<const glm::vec4> sent, std::span<glm::vec4> received, const BounceRules& rules,

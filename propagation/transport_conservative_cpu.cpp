@@ -39,7 +39,7 @@ struct ConservativeTransport::CoarsePart {
   const VoxelGrid& voxels;
   ConservativeTransport transport;
   std::vector<glm::vec4> received;
-  std::unique_ptr<CoarseLink> link;  // made when it is first asked for
+  std::unique_ptr<CoarseLink> link;  // made on first use
   size_t bytes() const {
     return transport.bytes() + received.size() * sizeof(received[0]) + (link ? link->bytes() : 0);
   }
@@ -131,7 +131,7 @@ void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received,
   light.lit_high |= beside_walls.lit_high;
 }
 
-/// The next leaf's neighbours at +x and +y have not been read in this pass: asks for what it will want of them.
+/// The next leaf's neighbours at +x and +y have not been read in this pass: prefetches what it will need of them.
 void ConservativeTransport::fetch_faces(int number) const {
   const LobeVolume& now = lobes();
   if (number + 1 >= numbers().count()) return;
@@ -195,25 +195,25 @@ glm::vec3 ConservativeTransport::end_coarsely(std::span<glm::vec4> received, con
   });
   const glm::dvec3 lost = in_flight() - t.in_flight();
   std::fill(c.received.begin(), c.received.end(), glm::vec4(0.0f));
-  const int most = longest_pulse(voxels_.grid());
-  for (int i = 0; i < most && !rules.pulse_ended(glm::vec3(t.in_flight()), glm::vec3(sent_)); ++i) {
+  const int limit = longest_pulse(voxels_.grid());
+  for (int i = 0; i < limit && !rules.pulse_ended(glm::vec3(t.in_flight()), glm::vec3(sent_)); ++i) {
     t.half_steps_ = glm::any(glm::greaterThan(t.in_flight(), kHalfStepShare * sent_));
     t.pass(c.received, rules.together());
   }
   return glm::vec3(lost + t.in_flight() + c.link->spread(c.received, received));
 }
 
-bool ConservativeTransport::advance(std::span<glm::vec4> received, int most_passes, const BounceRules& rules,
+bool ConservativeTransport::advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules,
                                     BounceReport& report) {
   // As the GPU: the look at the power in flight comes a batch late, and how advance() is called does not matter.
-  const int most = rules.iterations ? *rules.iterations : longest_pulse(voxels_.grid());
-  bool ends = passes_ >= most;
-  for (int i = 0; i < most_passes && !ends; ++i) {
+  const int limit = rules.iterations ? *rules.iterations : longest_pulse(voxels_.grid());
+  bool ends = passes_ >= limit;
+  for (int i = 0; i < max_passes && !ends; ++i) {
     if (passes_ % kBatch == 0) looked_at_ = in_flight();
     pass(received, rules.together());
     ++report.passes;
     const bool looks = passes_ % kBatch == 0 && !rules.iterations;
-    ends = passes_ >= most || (looks && ended(rules));
+    ends = passes_ >= limit || (looks && ended(rules));
   }
   if (ends) report.left += coarse_ ? end_coarsely(received, rules) : glm::vec3(in_flight());
   return ends;

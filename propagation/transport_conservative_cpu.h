@@ -31,7 +31,7 @@ class ConservativeTransport : public Transport {
   ~ConservativeTransport() override;
 
   void begin(std::span<const glm::vec4> sent) override;
-  bool advance(std::span<glm::vec4> received, int most_passes, const BounceRules& rules, BounceReport& report) override;
+  bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return true; }
   bool linear() const override { return false; }
   RadianceVolume radiance(std::span<const glm::vec4> sent) override;

@@ -19,7 +19,7 @@ glm::ivec3 lobe_texels(const Grid& grid, int order) {
 }
 
 // A pulse that has not ended after 64 crossings of the grid never will (a closed box without losses).
-int most_passes(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.z); }
+int max_passes(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.z); }
 
 }  // namespace
 
@@ -44,7 +44,7 @@ gl::Program ConservativeTransportGl::compile(const char* shader) const {
 void ConservativeTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                                     const BounceRules& rules, BounceReport& report) {
   begin_order(voxels, sent);
-  while (!advance_order(voxels, received, most_passes(grid_), rules, report)) {
+  while (!advance_order(voxels, received, max_passes(grid_), rules, report)) {
   }
 }
 
@@ -55,12 +55,12 @@ void ConservativeTransportGl::begin_order(const VoxelGridGl& voxels, const gl::B
   passes_ = 0;
 }
 
-bool ConservativeTransportGl::advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int most_passes_now,
+bool ConservativeTransportGl::advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int max_passes_now,
                                             const BounceRules& rules, BounceReport& report) {
-  const int most = rules.iterations ? *rules.iterations : most_passes(grid_);
-  bool ended = passes_ >= most;
-  for (int done = 0; done < most_passes_now && !ended;) {
-    const int batch = std::min({kBatch, most - passes_, most_passes_now - done});
+  const int limit = rules.iterations ? *rules.iterations : max_passes(grid_);
+  bool ended = passes_ >= limit;
+  for (int done = 0; done < max_passes_now && !ended;) {
+    const int batch = std::min({kBatch, limit - passes_, max_passes_now - done});
     advance(voxels, received, batch, rules.together());
     request_in_flight(voxels);
     const glm::vec3 now = pop_in_flight();  // as it was before this batch
@@ -68,7 +68,7 @@ bool ConservativeTransportGl::advance_order(const VoxelGridGl& voxels, const gl:
     passes_ += batch;
     done += batch;
     report.passes += batch;
-    ended = passes_ >= most || (!rules.iterations && rules.pulse_ended(now, start_));
+    ended = passes_ >= limit || (!rules.iterations && rules.pulse_ended(now, start_));
   }
   if (ended) report.left += pop_in_flight();
   return ended;
@@ -143,7 +143,7 @@ RadianceVolumeGl ConservativeTransportGl::radiance(const VoxelGridGl& voxels, co
   const int current_under_way = current_;
   emit(voxels, sent);
   const glm::vec3 start = in_flight(voxels);
-  for (int passes = 0; passes < most_passes(grid_); ++passes) {
+  for (int passes = 0; passes < max_passes(grid_); ++passes) {
     voxels.bind();
     lobes_[current_].bind(0);
     result.sh.bind_image(0, GL_READ_WRITE);

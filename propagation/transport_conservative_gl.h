@@ -26,7 +26,7 @@ class ConservativeTransportGl : public TransportGl, public ResumableGl {
   void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received, const BounceRules& rules,
              BounceReport& report) override;
   void begin_order(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
-  bool advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int most_passes_now,
+  bool advance_order(const VoxelGridGl& voxels, const gl::Buffer& received, int max_passes_now,
                      const BounceRules& rules, BounceReport& report) override;
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return true; }
@@ -49,7 +49,7 @@ class ConservativeTransportGl : public TransportGl, public ResumableGl {
   gl::Program compile(const char* shader) const;
   int order_;
   gl::Program emit_, propagate_, sum_lobes_, sum_partials_;
-  std::optional<gl::Program> add_radiance_;  // compiled when asked for
+  std::optional<gl::Program> add_radiance_;  // compiled on first use
   gl::Texture lobes_[2];                     // RGBA32F, parts of the three bands' lobes stacked in z
   gl::Buffer partials_, sum_;
   gl::Readback readback_;

@@ -61,7 +61,7 @@ sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float ce
   sweep::Constants c;
   const int directions = int(set.directions.size());
   c.octets = octets_of(directions);
-  assert(c.octets <= sweep::kMostOctets);
+  assert(c.octets <= sweep::kMaxOctets);
   const int in_quads = std::min(directions, 2 * c.octets);
   for (int d = 0; d < in_quads; ++d) {
     for (int band = 0; band < 3; ++band) set_lane(c, sweep::kQuad * d + band, set, size_t(d), rule, cell_size_m);
@@ -209,7 +209,7 @@ void OrdinatesTransport::begin(std::span<const glm::vec4> sent) {
   });
 }
 
-bool OrdinatesTransport::advance(std::span<glm::vec4> received, int /*most_passes*/, const BounceRules& /*rules*/,
+bool OrdinatesTransport::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                  BounceReport& report) {
   assert(received.size() == voxels_.side_count());
   // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
@@ -262,7 +262,7 @@ void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* lea
   const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
   const size_t face = face_floats();
   Flow& flow = flows_[size_t(octant)];
-  alignas(64) float x_carried[sweep::kBlockFace * sweep::kMostLanes];
+  alignas(64) float x_carried[sweep::kBlockFace * sweep::kMaxLanes];
   unsigned char x_lit = 0;
   const sweep::Kernel kernel =
       kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);

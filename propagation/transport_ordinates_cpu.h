@@ -28,7 +28,7 @@ class OrdinatesTransport : public Transport {
   OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
 
   void begin(std::span<const glm::vec4> sent) override;
-  bool advance(std::span<glm::vec4> received, int most_passes, const BounceRules& rules, BounceReport& report) override;
+  bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return false; }
   bool linear() const override { return true; }
   /// One more sweep, octant after octant. Cells that no light reached are inactive.

@@ -8,13 +8,13 @@ namespace volgi {
 
 namespace {
 
-constexpr int kSidesARow = 1024;   // side_texel.glsl
+constexpr int kSidesPerRow = 1024;   // side_texel.glsl
 constexpr int kArrivedARow = 256;  // side_texel.glsl
 constexpr int kOctantsOfSide = 4;  // that can reach it
 constexpr int kBlocksARow = 1024;  // sweep.comp.glsl
 constexpr int kBlock = 8;          // sweep.comp.glsl: cells on an edge
 
-int rows(size_t count, int a_row) { return std::max(1, int((count + size_t(a_row) - 1) / size_t(a_row))); }
+int rows(size_t count, int per_row) { return std::max(1, int((count + size_t(per_row) - 1) / size_t(per_row))); }
 
 int quads_of(int directions) { return (directions / 8 + 3) / 4; }
 
@@ -87,7 +87,7 @@ void OrdinatesTransportGl::list_blocks() {
 void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& sent) {
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
-    side_light_ = gl::Texture::make_2d(GL_RGBA32F, kSidesARow, rows(capacity_, kSidesARow));
+    side_light_ = gl::Texture::make_2d(GL_RGBA32F, kSidesPerRow, rows(capacity_, kSidesPerRow));
     arrived_ = gl::Texture::make_2d(GL_R32F, kArrivedARow * kOctantsOfSide * lanes_, rows(capacity_, kArrivedARow));
   }
   voxels.bind();

@@ -50,7 +50,7 @@ class OrdinatesTransportGl : public TransportGl {
   OrdinateChoice choice_;
   int lanes_;  // invocations of one block and octant: three bands of as many quads of directions
   gl::Program prepare_, sweep_, collect_;
-  std::unique_ptr<SweepRadianceGl> read_out_;  // made when asked for
+  std::unique_ptr<SweepRadianceGl> read_out_;  // made on first use
   gl::Buffer shares_;
   gl::Texture faces_[3];                          // by axis: what leaves cells through downwind faces
   gl::Texture cell_word_, side_light_, arrived_;  // prepare_sweep.comp.glsl, sweep.comp.glsl

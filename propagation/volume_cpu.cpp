@@ -18,11 +18,11 @@ namespace volgi {
 
 namespace {
 
-constexpr int kLeastCoarseGrid = 16;  // below, a coarse part has too few cells to say anything
+constexpr int kMinCoarseGrid = 16;  // below, a coarse part has too few cells to say anything
 
 bool has_coarse_part(const SchemeOptions& scheme, const Grid& grid) {
   return scheme.scheme == Scheme::conservative && scheme.coarse_start.value_or(true) &&
-         std::max({grid.cells.x, grid.cells.y, grid.cells.z}) >= kLeastCoarseGrid;
+         std::max({grid.cells.x, grid.cells.y, grid.cells.z}) >= kMinCoarseGrid;
 }
 
 /// CellVolumes of so many leaves of 8^3 cells: a float and three vectors a cell. Nodes above leaves are not counted.
@@ -99,7 +99,7 @@ void VolumeCpu::voxelize() {
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);
-  if (moved && !papers) cells_ = {};  // made when asked for
+  if (moved && !papers) cells_ = {};  // made on first use
   const bool only_sides_count = !moved || !(coarse || papers);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);

@@ -12,7 +12,7 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   if (!carries_sides(o.scheme.scheme)) {
     if (o.bounces)
       throw Error(ExitCode::usage, "--bounces: the papers' schemes cannot tell orders apart; use --iterations");
-    if (o.warm_start || o.passes_a_run)
+    if (o.warm_start || o.passes_per_run)
       throw Error(ExitCode::usage, "the papers' schemes start every frame anew: no warm start, no amortised frames");
   }
   if (o.source == VolumeOptions::Source::first_bounce && o.scheme.injection == SchemeOptions::Injection::max)
@@ -24,7 +24,7 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   rules.iterations = o.iterations;
   rules.solver = o.solver;
   rules.warm_start = o.warm_start;
-  rules.passes_a_run = o.passes_a_run;
+  rules.passes_per_run = o.passes_per_run;
   rules.largest_albedo = largest_albedo;
   return rules;
 }

@@ -9,7 +9,7 @@
 
 namespace volgi {
 
-/// What a volume is asked for, on either backend.
+/// Options of a volume, on either backend.
 struct VolumeOptions {
   int grid_cells = 32;               // along the longest axis, 1 ... 256
   glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
@@ -19,7 +19,7 @@ struct VolumeOptions {
   std::optional<int> iterations;     // BounceRules; of the papers' schemes, kPulseIterations unless given
   BounceRules::Solver solver = BounceRules::Solver::automatic;
   bool warm_start = false;
-  std::optional<int> passes_a_run;
+  std::optional<int> passes_per_run;
   /// What the flux that it is given stands for. lights: what lit and emissive surfaces send, and it carries all of the
   /// rest. first_bounce: what sides reflect of virtual lights, where the screen carries the first bounce of punctual
   /// light and the arrival of emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission
@@ -28,7 +28,7 @@ struct VolumeOptions {
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 
-  static constexpr int kMostGridCells = 256;
+  static constexpr int kMaxGridCells = 256;
   static constexpr int kPulseIterations = 64;  // Gaitatzes 2010, table 1, "room"
 };
 

@@ -15,7 +15,7 @@ namespace volgi {
 namespace {
 
 constexpr int kBlock = 16;
-constexpr int kFewestInBlock = 32;
+constexpr int kMinPixelsInBlock = 32;
 
 double channel_mean(glm::dvec3 c) { return (c.x + c.y + c.z) / 3.0; }
 bool finite(glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); }
@@ -114,7 +114,7 @@ void measure_blocks(const Image& ref, const Image& test, const Mask& mask, doubl
           t += channel_mean(test.at(x, y));
           ++count;
         }
-      if (count < kFewestInBlock) continue;
+      if (count < kMinPixelsInBlock) continue;
       const double q = (t - r) / (r + 0.1 * ref_mean * count);
       squares += q * q;
       sum += q;

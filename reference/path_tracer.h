@@ -19,7 +19,7 @@ struct PathTracerOptions {
   int threads = 0;  // 0: all; the picture does not depend on it
 };
 
-/// All layers of one reference picture. `color` is the light that was asked for, `half_a` and `half_b` its two
+/// All layers of one reference picture. `color` is the requested light, `half_a` and `half_b` its two
 /// independent halves: color = (a + b)/2, and (a - b)/2 is as noisy as color.
 struct ReferencePicture {
   PathTracerOptions::Light light = PathTracerOptions::Light::full;

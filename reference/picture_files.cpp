@@ -42,7 +42,7 @@ std::optional<Image> difference(const std::optional<Image>& a, const std::option
   return difference(*a, *b);
 }
 
-// R,G,B and noise of the light asked for, from those of the picture and of its direct light.
+// R,G,B and noise of the requested light, from those of the picture and of its direct light.
 struct ColorAndNoise {
   Image color;
   std::optional<Image> noise;

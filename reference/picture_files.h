@@ -7,7 +7,7 @@
 
 namespace volgi {
 
-/// A reference ready to be compared with: the light that was asked for, its noise, and what regions need.
+/// A reference ready to be compared with: the requested light, its noise, and what regions need.
 struct ReferenceFile {
   Image color;
   std::optional<Image> noise;          // half the difference of two independent halves
@@ -23,7 +23,7 @@ struct ReferenceFile {
 ReferenceFile read_reference(const std::filesystem::path& path, PathTracerOptions::Light light);
 
 /// Reads a picture to be judged: R,G,B; or of an EXR with direct.RGB that layer for direct, R,G,B less it for indirect.
-/// A picture without that layer is taken to be the light asked for.
+/// A picture without that layer is taken to be the requested light.
 Image read_test(const std::filesystem::path& path, PathTracerOptions::Light light);
 
 }  // namespace volgi

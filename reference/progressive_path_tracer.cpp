@@ -14,9 +14,9 @@ struct ProgressivePathTracer::Data {
     bool hit = false;
   };
 
-  Data(const Scene& scene, const Camera& as_seen, const PathTracerOptions& as_asked)
+  Data(const Scene& scene, const Camera& as_seen, const PathTracerOptions& as_requested)
       : camera(as_seen),
-        options(as_asked),
+        options(as_requested),
         tracer(scene, camera, options),
         pixels(static_cast<size_t>(options.size.x) * static_cast<size_t>(options.size.y)) {}
 

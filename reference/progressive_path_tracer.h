@@ -17,10 +17,10 @@ class ProgressivePathTracer {
   ProgressivePathTracer(const Scene& scene, const Camera& camera, const PathTracerOptions& options);
   ~ProgressivePathTracer();
 
-  /// So many more samples for every pixel. Cost: samples · pixels · path length rays.
+  /// Adds this many samples to every pixel. Cost: samples · pixels · path length rays.
   void trace(int samples_per_pixel);
   int samples_per_pixel() const;
-  /// The light asked for, from all samples so far; black before the first.
+  /// The requested light, from all samples so far; black before the first.
   Image image() const;
 
  private:

@@ -22,10 +22,10 @@ constexpr std::array<std::uint8_t, 32> kBitCount = [] {
   return count;
 }();
 
-constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
+constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
 constexpr float kOneLayer = 0.02f;           // cells: layers nearer than this count as one
 constexpr float kFarthest = 3.0f;            // cells along the axis
-constexpr float kLeastShare = 1e-3f;         // of the normal along an axis that is asked
+constexpr float kMinShare = 1e-3f;         // of the normal along an axis that is asked
 
 /// Whether a depth on the axis is farther than that from all points of a cell.
 bool farther(float low, float depth) { return !(std::max(low - depth, depth - (low + 1.0f)) <= kFarthest); }
@@ -96,7 +96,7 @@ void SideColumns::spread(int kind) {
 SideSearch::SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both)
     : voxels_(voxels), columns_(columns), normals_{normal, -normal}, fronts_{front, 1 - front}, ways_(both ? 2 : 1) {
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(std::abs(normal[axis]) >= kLeastShare)) continue;
+    if (!(std::abs(normal[axis]) >= kMinShare)) continue;
     prepare(axis, columns);
     weights_[axis] = std::abs(normal[axis]);
   }
@@ -104,7 +104,7 @@ SideSearch::SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm:
 }
 
 void SideSearch::prepare(int axis, const SideColumns* columns) {
-  axes_asked_ |= 1 << axis;
+  searched_axes_ |= 1 << axis;
   const glm::vec3 normal = normals_[0];
   Axis& a = axes_[axis];
   a.slope_b = normal[shared::axis_b(axis)] / normal[axis];
@@ -177,7 +177,7 @@ inline bool SideSearch::look(const Column& column, std::uint32_t three, const Pl
       found.facing_varies |= !all_near;
       if (near) found.facing = int(index);
     }
-    if (!(cosine >= kLikeNormals)) continue;
+    if (!(cosine >= kSimilarNormalCosine)) continue;
     found.alike_varies |= !all_near;
     if (!near) continue;
     found.alike = int(index);
@@ -188,7 +188,7 @@ inline bool SideSearch::look(const Column& column, std::uint32_t three, const Pl
 
 /// Whether one of the nine columns around has a side that the plane might ask for.
 template <int axis>
-inline bool SideSearch::anybody_around(const Column& own, int way) const {
+inline bool SideSearch::any_side_around(const Column& own, int way) const {
   if (columns_ == nullptr) return true;
   const Axis& a = axes_[axis];
   const float slope = a.slope > 0.0f ? a.slope + 1e-3f : 0.0f;  // rounding
@@ -205,7 +205,7 @@ inline int SideSearch::side_at_once(const Column& column, int way) const {
   const shared::Side& side = voxels_.sides()[index];
   const bool good = (side.front == fronts_[way] || fronts_[way] < 0) &&
                     (fronts_[way] < 0 || (side.depth - column.depth) * side.normal[axis] <= kOneLayer) &&
-                    glm::dot(side.normal, normals_[way]) >= kLikeNormals;
+                    glm::dot(side.normal, normals_[way]) >= kSimilarNormalCosine;
   return good ? int(index) : -1;
 }
 
@@ -227,7 +227,7 @@ inline void SideSearch::find(const glm::vec3& point, const glm::ivec3& own, Foun
     const Column column = column_at<axis>(point, own[b], own[c]);
     for (int way = 0; way < ways_; ++way) {
       found[way].alike = side_at_once<axis>(column, way);
-      if (found[way].alike >= 0 || !anybody_around<axis>(column, way)) searching &= ~(1 << way);
+      if (found[way].alike >= 0 || !any_side_around<axis>(column, way)) searching &= ~(1 << way);
     }
   }
   if (searching == 0) return;
@@ -308,7 +308,7 @@ inline SidesOfPoint SideSearch::weighted(const Found (&by_axis)[3][2], int way, 
   for (int axis = 0; axis < 3; ++axis) {
     out.sides[axis] = alike != 0 ? by_axis[axis][way].alike : by_axis[axis][way].facing;
   }
-  if (alike == axes_asked_) {
+  if (alike == searched_axes_) {
     out.weights = weights_;
     return out;
   }
@@ -337,13 +337,13 @@ inline SideSearch::Answer SideSearch::at_one_axis(const glm::vec3& point, const 
 }
 
 SideSearch::Answer SideSearch::at(const glm::vec3& point, const glm::ivec3& cell) const {
-  if (axes_asked_ == 1) return at_one_axis<0>(point, cell);
-  if (axes_asked_ == 2) return at_one_axis<1>(point, cell);
-  if (axes_asked_ == 4) return at_one_axis<2>(point, cell);
+  if (searched_axes_ == 1) return at_one_axis<0>(point, cell);
+  if (searched_axes_ == 2) return at_one_axis<1>(point, cell);
+  if (searched_axes_ == 4) return at_one_axis<2>(point, cell);
   Found found[3][2];
-  if ((axes_asked_ & 1) != 0) find<0>(point, cell, found[0]);
-  if ((axes_asked_ & 2) != 0) find<1>(point, cell, found[1]);
-  if ((axes_asked_ & 4) != 0) find<2>(point, cell, found[2]);
+  if ((searched_axes_ & 1) != 0) find<0>(point, cell, found[0]);
+  if ((searched_axes_ & 2) != 0) find<1>(point, cell, found[1]);
+  if ((searched_axes_ & 4) != 0) find<2>(point, cell, found[2]);
   Answer out;
   out.along = weighted(found, 0, out.place_matters);
   if (ways_ == 2) out.against = weighted(found, 1, out.place_matters);

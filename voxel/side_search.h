@@ -74,7 +74,7 @@ class SideSearch {
  public:
   /// @param columns  of the same voxels: saves time where there are many searches; may be null. Needs front 0 or 1, and
   ///                 cells not farther outside the grid than one.
-  /// @param front    of the sides that `normal` asks for; with `both`, 1 - front is asked for against it.
+  /// @param front    of the sides that `normal` asks for; with `both`, sides with 1 - front are searched against it.
   SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both);
 
   struct Answer {
@@ -96,7 +96,7 @@ class SideSearch {
 
   /// What a search along one axis needs to know of the plane.
   struct Axis {
-    float slope_b, slope_c, slope;  // slope: at most so much between neighbouring columns
+    float slope_b, slope_c, slope;  // slope: at most this between neighbouring columns
     int faces[2];                   // of the cells that see it: along the normal, against it
     int below[2];                   // how far these are below the face between the two
     SideColumns::Columns columns[2];
@@ -129,7 +129,7 @@ class SideSearch {
   template <int axis>
   int side_at_once(const Column& column, int way) const;
   template <int axis>
-  bool anybody_around(const Column& own, int way) const;
+  bool any_side_around(const Column& own, int way) const;
   template <int axis>
   std::uint32_t side_of(const Column& column, int cell, int way) const;
   SidesOfPoint weighted(const Found (&by_axis)[3][2], int way, bool& place_matters) const;
@@ -139,7 +139,7 @@ class SideSearch {
   glm::vec3 normals_[2];
   int fronts_[2];
   int ways_;
-  int axes_asked_ = 0;       // bits
+  int searched_axes_ = 0;       // bits
   glm::vec3 weights_{0.0f};  // where all of them find a side
   Axis axes_[3];
 };

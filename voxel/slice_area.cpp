@@ -127,8 +127,8 @@ void count_areas(const SlicedScene& s, const BlockTable& table, VoxelGrid& voxel
   tbb::parallel_for(tbb::blocked_range<size_t>(0, sides.size(), 4096), [&](const tbb::blocked_range<size_t>& part) {
     for (size_t i = part.begin(); i != part.end(); ++i) {
       shared::Side& side = sides[i];
-      const float least = SIDE_LEAST_FILL * side.face_m2 / shared::staircase_factor(side.normal);
-      side.area_m2 = std::max(counter.area_m2(i), least);
+      const float min_area_m2 = SIDE_MIN_FILL * side.face_m2 / shared::staircase_factor(side.normal);
+      side.area_m2 = std::max(counter.area_m2(i), min_area_m2);
     }
   });
 }

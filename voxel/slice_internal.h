@@ -25,7 +25,7 @@ constexpr std::int64_t kHalfNodeStep = kNodeStep / 2;
 static_assert(kFine * kNodeStep == SLICE_STEPS);
 constexpr std::int64_t node_position(std::int64_t k) { return k * kNodeStep + kHalfNodeStep; }
 
-constexpr float kOpaque = 0.999f;  // what stops as much stops everything (slice.frag.glsl)
+constexpr float kOpaque = 0.999f;  // a share as large as this stops everything (slice.frag.glsl)
 
 using Long3 = std::array<std::int64_t, 3>;
 

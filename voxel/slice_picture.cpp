@@ -15,7 +15,7 @@ namespace volgi {
 namespace {
 
 constexpr int kSinglePixels = 512, kPanelPixels = 384;  // longest edge of a slice alone, and of one of several
-constexpr int kMostPixels = 16384;
+constexpr int kMaxPixels = 16384;
 constexpr int kMargin = 12;
 constexpr int kTextScale = 2;
 constexpr int kLineHeight = 12 * kTextScale;  // stb_easy_font's line is 12 high
@@ -52,9 +52,9 @@ struct Slice {
 
 int box_edge(const openvdb::CoordBBox& box, int axis) {
   const std::int64_t edge = std::int64_t(box.max()[axis]) - box.min()[axis] + 1;
-  if (edge > kMostPixels)
+  if (edge > kMaxPixels)
     throw Error(ExitCode::over_limit, fmt::format("the grid's box has {} cells along {}: pictures go up to {}", edge,
-                                                  kAxisNames[size_t(axis)], kMostPixels));
+                                                  kAxisNames[size_t(axis)], kMaxPixels));
   return int(edge);
 }
 
@@ -81,19 +81,19 @@ Slice read_slice(const openvdb::GridBase& grid, const openvdb::CoordBBox& box, S
 class ColorScale {
  public:
   ColorScale(const openvdb::GridBase& grid, const GridSummary& s) {
-    double least = 0.0;
+    double smallest = 0.0;
     for (const ChannelRange& range : s.channels) {
-      least = std::min(least, range.minimum);
+      smallest = std::min(smallest, range.minimum);
       largest_ = std::max({largest_, range.maximum, -range.minimum});
     }
     const bool vector = s.channels.size() == 3;
     if (vector && grid.getVectorType() == openvdb::VEC_COVARIANT_NORMALIZE)
       kind_ = Kind::normal;
-    else if (least < 0.0)
+    else if (smallest < 0.0)
       kind_ = vector ? Kind::signed_luminance : Kind::signed_number;
     else
       kind_ = vector ? Kind::color : Kind::number;
-    const bool share = s.unit == "1" && least >= 0.0 && largest_ <= 1.0;
+    const bool share = s.unit == "1" && smallest >= 0.0 && largest_ <= 1.0;
     end_ = share || largest_ == 0.0 ? 1.0 : largest_;
     // As a light meter has it: the mean becomes middle grey, 0.18, and 1 is white, where the bar ends. Near a lamp
     // values are a thousand times those of the room.

@@ -26,7 +26,7 @@ constexpr FineTable kFineTable;
 struct Window {
   int first_b, last_b, first_c, last_c;
   int first_k, last_k;
-  bool holds_all_k = false;  // no fragment of the triangle is outside them
+  bool covers_all_nodes = false;  // no fragment of the triangle is outside them
 };
 
 /// All fragments of a block's faces in the pass along `axis`.
@@ -48,7 +48,7 @@ inline bool cut(Window& w, const FineBox& box, int axis) {
   w.first_c = std::max(w.first_c, box.first[c]);
   w.last_c = std::min(w.last_c, box.last[c]);
   // The first node above a point may be that after the last in the bounds.
-  w.holds_all_k = w.first_k <= box.first[axis] && box.last[axis] + 1 <= w.last_k;
+  w.covers_all_nodes = w.first_k <= box.first[axis] && box.last[axis] + 1 <= w.last_k;
   return w.first_b <= w.last_b && w.first_c <= w.last_c && box.first[axis] <= w.last_k &&
          box.last[axis] + 1 >= w.first_k;
 }
@@ -148,7 +148,7 @@ class TriangleSlice {
       if (h.least(columns_b, columns_c) < 0) planes[count++] = h;
       return true;
     };
-    if (!w.holds_all_k) {
+    if (!w.covers_all_nodes) {
       if (!add({start.value - divisor * (w.first_k - 1) - 1, start.step_b, start.step_c})) return;
       if (!add({divisor * w.last_k - start.value, -start.step_b, -start.step_c})) return;
     }

@@ -48,7 +48,7 @@ std::string text_of(const openvdb::MetaMap& metadata, const char* key) {
   return value ? value->str() : std::string();
 }
 
-bool is_said_elsewhere(const std::string& key) {
+bool is_shown_elsewhere(const std::string& key) {
   using openvdb::GridBase;
   for (const char* known :
        {GridBase::META_GRID_NAME, GridBase::META_GRID_CLASS, GridBase::META_VECTOR_TYPE, kUnitKey, kDescriptionKey})
@@ -82,7 +82,7 @@ GridSummary summarise(const openvdb::GridBase& grid) {
 std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further_metadata(const openvdb::MetaMap& metadata) {
   std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further;
   for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it)
-    if (it->second && !is_said_elsewhere(it->first)) further.emplace_back(it->first, it->second);
+    if (it->second && !is_shown_elsewhere(it->first)) further.emplace_back(it->first, it->second);
   return further;
 }
 

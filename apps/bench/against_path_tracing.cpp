@@ -52,7 +52,7 @@ std::vector<CurvePoint> path_tracing_curve(const Scene& scene, const Yardstick& 
   ProgressivePathTracer tracer(scene, scene.cameras[0], tracer_options(options, kSeed));
   std::vector<CurvePoint> curve;
   double ms = 0.0;
-  for (int spp = 1; spp <= options.most_spp; spp *= 2) {
+  for (int spp = 1; spp <= options.max_spp; spp *= 2) {
     ms += time_ms([&] { tracer.trace(spp - tracer.samples_per_pixel()); });
     curve.push_back({spp, ms, yardstick.error_percent(tracer.image())});
     if (curve.back().error_percent <= target_percent) break;
@@ -92,7 +92,7 @@ nlohmann::json bench_against_path_tracing(const Scene& scene, const gl::Context&
   const std::vector<CurvePoint> curve = path_tracing_curve(scene, yardstick, target, options);
   picture.render_repeatedly(options.frames);
   frames_ms.insert(frames_ms.end(), picture.frames_ms().begin(), picture.frames_ms().end());
-  const auto [least, most] = std::minmax_element(frames_ms.begin(), frames_ms.end());
+  const auto [smallest, largest] = std::minmax_element(frames_ms.begin(), frames_ms.end());
 
   const Reached reached = time_to(target, curve);
   nlohmann::json points = nlohmann::json::array();
@@ -105,7 +105,7 @@ nlohmann::json bench_against_path_tracing(const Scene& scene, const gl::Context&
           {"device", context.device_name()},
           {"reference", {{"spp", options.reference_spp}, {"noise_percent", yardstick.noise_percent()}}},
           {"hybrid",
-           {{"frame_ms", {{"min", *least}, {"median", frame_ms}, {"max", *most}}},
+           {{"frame_ms", {{"min", *smallest}, {"median", frame_ms}, {"max", *largest}}},
             {"frames", frames_ms.size()},
             {"error_percent", target},
             {"energy", error.ratio}}},

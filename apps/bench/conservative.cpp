@@ -101,7 +101,7 @@ nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> 
   ConservativeTransport transport(voxels, 1);
   ConservativeTransport dense_transport(voxels, 1);
   dense_transport.set_dense(true);
-  const auto ms_a_pass = [&](ConservativeTransport& t) {
+  const auto ms_per_pass = [&](ConservativeTransport& t) {
     t.begin(sent);
     return time_ms([&] {
              for (int pass = 0; pass < iterations; ++pass) t.pass(received, true);
@@ -110,7 +110,7 @@ nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> 
   };
   std::vector<double> dense, sparse, speedups;
   for (int i = -1; i < std::max(repeats, 5); ++i) {
-    const double d = ms_a_pass(dense_transport), s = ms_a_pass(transport);
+    const double d = ms_per_pass(dense_transport), s = ms_per_pass(transport);
     if (i < 0) continue;  // memory is fetched in the first
     dense.push_back(d);
     sparse.push_back(s);

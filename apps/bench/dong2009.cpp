@@ -7,7 +7,7 @@
 
 #include "apps/bench/repeated_frame.h"
 #include "screen/gather/interleaved/area_light_gather.h"
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/area_maps/convolution_shadow.h"
 
@@ -38,8 +38,8 @@ const Step kSteps[] = {
     {"deferred rendering", 0.4, {screen::GBuffer::name, screen::Direct::name, screen::Compose::name}},
     {"VPL generation",
      0.1,
-     {screen::ReflectiveShadowMap::name, screen::VirtualLights::name, screen::ChooseVirtualLights::name,
-      screen::VirtualLightParts::name}},
+     {screen::ReflectiveShadowMap::name, screen::VirtualLights::name, screen::ResampleVirtualLights::name,
+      screen::VirtualLightSubdivision::name}},
     {"VAL clustering", 0.5, {screen::VirtualAreaLights::name}},
     {"shadow maps", 4.2, {screen::ParaboloidDepthMaps::name, screen::ConvolutionShadow::name}},
     {"indirect illumination", 35.0, {}},

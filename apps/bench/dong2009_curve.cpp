@@ -17,24 +17,24 @@ namespace volgi::app {
 namespace {
 
 /// Above this many lights only the default shadow method is shown: a picture gathers all of them at every pixel.
-constexpr int kMostLightsOfAllMethods = 1024;
+constexpr int kMaxLightsOfAllMethods = 1024;
 /// Convolution keeps 28 bytes a texel and its mipmaps, 37 bytes where the others keep 4: 630 MB at 256 maps of 256^2.
-constexpr int kMostConvolutionMaps = 256;
+constexpr int kMaxConvolutionMaps = 256;
 
 std::vector<int> area_light_counts(int lights) {
   std::vector<int> counts;
-  for (const int m : {2, 4, 8, 15, 30, 60, 120, 256, 512, VIRTUAL_AREA_LIGHTS_MOST}) {
+  for (const int m : {2, 4, 8, 15, 30, 60, 120, 256, 512, MAX_VIRTUAL_AREA_LIGHTS}) {
     if (m < lights) counts.push_back(m);
   }
-  if (lights <= VIRTUAL_AREA_LIGHTS_MOST) counts.push_back(lights);
+  if (lights <= MAX_VIRTUAL_AREA_LIGHTS) counts.push_back(lights);
   return counts;
 }
 
 bool shown(const AreaLightShadowName& shadow, int lights, int area_lights) {
   const bool is_default = &shadow == &kAreaLightShadows[0];
-  if (!is_default && lights > kMostLightsOfAllMethods) return false;
+  if (!is_default && lights > kMaxLightsOfAllMethods) return false;
   return screen::AreaLightShadow::Method(shadow.number) != screen::AreaLightShadow::Method::convolution ||
-         area_lights <= kMostConvolutionMaps;
+         area_lights <= kMaxConvolutionMaps;
 }
 
 screen::FrameOptions frame_options(int lights, int area_lights, const AreaLightShadowName& shadow, int size) {
@@ -48,7 +48,7 @@ screen::FrameOptions frame_options(int lights, int area_lights, const AreaLightS
   o.of<screen::AreaMapOptions>().shadow = screen::AreaLightShadow::Method(shadow.number);
   o.of<screen::AreaLightGatherOptions>().interleave = 1;
   o.of<screen::ResampleOptions>().near_zone =
-      0.0f;  // parts of lights are not in the list that exact visibility is asked for
+      0.0f;  // sub-lights are not in the list whose exact visibility is computed
   return o;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kAlbedo = 0.7f;
 constexpr int kLargestConservative = 32;  // cells on an edge
-constexpr double kError = 0.005;          // of what the error is asked to be under
+constexpr double kError = 0.005;          // the error must be below this
 
 int add_material(Scene& scene, float albedo, float radiance) {
   Material m;

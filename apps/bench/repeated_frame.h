@@ -26,7 +26,7 @@ class RepeatedFrame {
                 Timing timing = Timing::passes);
 
   void render();
-  /// render(), so many times after kWarmUp that do not count.
+  /// render(), this many times after kWarmUp untimed ones.
   void render_repeatedly(int frames);
   void forget_warm_up();
   const ColdFrame& cold() const { return cold_; }  // the first one

@@ -6,7 +6,7 @@
 namespace volgi::app {
 
 /// Times of the CPU's voxelization, and of OpenVDB's meshToVolume (narrow band of one cell on both sides, same spacing)
-/// in the same run: what is asked of the first is a ratio. Medians over `repeats` runs that take turns, after one that
+/// in the same run: the limit is on their ratio. Medians over `repeats` runs that take turns, after one that
 /// warms up; all threads. Made before and not timed: the textures' mipmaps, which a scene that
 /// moves keeps (voxelization_mipmaps; VolumeCpu does the same), and meshToVolume's list of points and triangles, which
 /// it would not keep. All else is timed, memory given back included.

@@ -25,7 +25,7 @@ constexpr double kSpreadOfRuns = 1.25;
 /// What measuring finished points again gave.
 struct Repeated {
   int points = 0;
-  int in_spread = 0;                   // whose median lies in the frames' range times or over kSpreadOfRuns
+  int in_spread = 0;                   // whose median lies in the frames' range, widened by kSpreadOfRuns either way
   std::vector<double> times_as_long;   // median over the median stated, of each
   std::vector<std::string> different;  // whose figures are not the same to the last digit, and how
 };

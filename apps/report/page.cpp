@@ -75,7 +75,7 @@ std::string report_page(const Report& report, const std::filesystem::path& folde
   std::string scenes;
   for (const std::string& scene : report.scenes()) scenes += scene_section(report, scene, folder);
   std::string page(report_text("page.html"));
-  // What is put in first is searched for the later names: texts of ours before those of others.
+  // A text is searched for the names that are put in after it: our own texts come first.
   replace(page, "{{style}}", report_text("page.css"));
   replace(page, "{{contents}}", contents(report));
   replace(page, "{{facts}}", facts(report));

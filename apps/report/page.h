@@ -13,7 +13,7 @@ std::string report_page(const Report& report, const std::filesystem::path& folde
 /// The part of one scene: verdicts, still plot, pictures and table of each light.
 std::string scene_section(const Report& report, const std::string& scene, const std::filesystem::path& folder);
 
-/// A table of texts, the first row its head; numbers are told by themselves.
+/// A table of texts, the first row is its head; numbers are recognised.
 std::string plain_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace volgi::app

@@ -24,9 +24,9 @@ struct Axis {
 
 double shown_error(const Judged& j) { return std::max(j.error_percent, 0.01); }
 
-Axis axis(double least, double most, double from, double to) {
+Axis axis(double smallest, double largest, double from, double to) {
   const double room = 0.06;
-  return {std::log10(least) - room, std::log10(most) + room, from, to};
+  return {std::log10(smallest) - room, std::log10(largest) + room, from, to};
 }
 
 // 1, 2 and 5 of every decade in view.
@@ -101,11 +101,11 @@ std::string techniques_points(const Verdict& v, const Axis& x, const Axis& y) {
 
 std::string plot_svg(const Verdict& v, bool standalone) {
   if (v.judged.empty()) return "";
-  const auto [least, most] =
+  const auto [smallest, largest] =
       std::minmax_element(v.judged.begin(), v.judged.end(),
                           [](const Judged& a, const Judged& b) { return shown_error(a) < shown_error(b); });
   const Axis x = axis(v.judged.front().time_ms, v.judged.back().time_ms, kLeft, kWidth - kRight);
-  const Axis y = axis(shown_error(*least), shown_error(*most), kHeight - kBottom - kLegendRow, kTop);
+  const Axis y = axis(shown_error(*smallest), shown_error(*largest), kHeight - kBottom - kLegendRow, kTop);
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" class=\"plot-svg\" role=\"img\" "
       "font-size=\"12\" "

@@ -91,10 +91,10 @@ Rendering trace_paths(const RenderTask& task) {
     builds.push_back(time_ms([&] { const PathIntegrator built_alone(task.scene); }));
     frames.push_back(time_ms([&] { out.picture = path_trace(task.scene, task.camera, tracer).color; }));
   }
-  const auto [least, most] = std::minmax_element(frames.begin(), frames.end());
-  out.min_ms = *least;
+  const auto [smallest, largest] = std::minmax_element(frames.begin(), frames.end());
+  out.min_ms = *smallest;
   out.median_ms = median(frames);
-  out.max_ms = *most;
+  out.max_ms = *largest;
   const double build_ms = std::min(median(builds), out.median_ms);
   out.passes.push_back({{"name", "reference/build"}, {"ms", build_ms}});
   out.passes.push_back({{"name", "reference/trace"}, {"ms", out.median_ms - build_ms}});

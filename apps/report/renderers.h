@@ -13,7 +13,7 @@
 
 namespace volgi::app {
 
-/// What a renderer is asked for; the same as on the command line of `volgi render` or `volgi reference`.
+/// What a renderer is to do; the same as on the command line of `volgi render` or `volgi reference`.
 struct RenderTask {
   const Scene& scene;
   const Camera& camera;

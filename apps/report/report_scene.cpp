@@ -58,7 +58,7 @@ std::string names_of(const Json& list) {
   return names;
 }
 
-void take_listed(ReportScene& scene, const Json& entry, const fs::path& data, glm::ivec2 size) {
+void use_listed_scene(ReportScene& scene, const Json& entry, const fs::path& data, glm::ivec2 size) {
   scene.all_bounces = stored_reference(entry, data, size);
   if (entry.contains("one_bounce")) scene.one_bounce = stored_reference(entry["one_bounce"], data, size);
 }
@@ -117,7 +117,7 @@ ReportScene open_report_scene(const std::string& name_or_file, const fs::path& d
   if (out.scene.cameras.empty()) warn_once(out.path.string() + ": no camera; the whole scene is framed");
   out.camera = out.scene.cameras.empty() ? framing_camera(out.scene.bounds_min, out.scene.bounds_max)
                                          : out.scene.cameras.front();
-  if (listed != nullptr) take_listed(out, *listed, data, size);
+  if (listed != nullptr) use_listed_scene(out, *listed, data, size);
   return out;
 }
 

@@ -13,8 +13,8 @@ using Json = nlohmann::ordered_json;
 
 // What "stands out" means. A wrong unit or a light counted twice is a factor: with the best factor applied little error
 // is left. Nothing that carries all bounces should be half as bright again as the reference.
-constexpr double kFactorAway = 1.2, kErrorThatFactorLeaves = 1.0 / 3.0, kEnergyAway = 1.5;
-constexpr double kPercentThatFactorLeaves = 100.0 / 3.0;  // of the reference: the factor 0 leaves 100
+constexpr double kMinConstantFactor = 1.2, kMaxErrorLeftByFactor = 1.0 / 3.0, kMaxEnergyFactor = 1.5;
+constexpr double kMaxPercentLeftByFactor = 100.0 / 3.0;  // of the reference: the factor 0 leaves 100
 
 std::optional<double> error_of(const Json& point) {
   if (point.contains("error") || !point.contains("metrics")) return std::nullopt;
@@ -80,14 +80,14 @@ std::string finding_of(const Json& metrics) {
   const double error = metrics.contains("rmse_pct_denoised") ? metrics["rmse_pct_denoised"].get<double>()
                                                              : metrics.at("rmse_pct").get<double>();
   if (ratio < 1e-6) return "black: it returns no light";
-  const bool far = factor > kFactorAway || factor < 1.0 / kFactorAway;
+  const bool far = factor > kMinConstantFactor || factor < 1.0 / kMinConstantFactor;
   const double left = metrics.value("rmse_pct_scaled", error);
-  if (far && left < kErrorThatFactorLeaves * error && left < kPercentThatFactorLeaves) {
+  if (far && left < kMaxErrorLeftByFactor * error && left < kMaxPercentLeftByFactor) {
     return fmt::format(
         "wrong by a constant factor: {:.2f} times the light; without it {:.1f} % error instead of {:.1f}", factor, left,
         error);
   }
-  if (ratio > kEnergyAway || ratio < 1.0 / kEnergyAway) return fmt::format("{:.2f} times the reference's light", ratio);
+  if (ratio > kMaxEnergyFactor || ratio < 1.0 / kMaxEnergyFactor) return fmt::format("{:.2f} times the reference's light", ratio);
   return "";
 }
 

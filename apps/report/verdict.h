@@ -21,7 +21,7 @@ struct Judged {
 struct Verdict {
   std::string scene, light;
   std::vector<Judged> judged;  // by time; those with an error message or without figures are left out
-  std::vector<size_t> front;   // of `judged`: nobody is as fast and as accurate. By time
+  std::vector<size_t> front;   // of `judged`: no other is both faster and more accurate. By time
 
   /// The fastest at or under an error; and the most accurate among those that the path tracer needs at least `speedup`
   /// times as long for, to the same error. Null where there is none.

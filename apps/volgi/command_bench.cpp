@@ -76,7 +76,7 @@ struct BenchCommand {
   nlohmann::json bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const;
 };
 
-/// `conservative` runs the number of passes asked for, as the papers' tables have it; `ordinates` all bounces.
+/// `conservative` runs the requested number of passes, as the papers' tables have it; `ordinates` all bounces.
 nlohmann::json BenchCommand::bench_frame(const std::string& name, Scheme scheme, gl::Context& context) const {
   const Scene scene = this->scene(name);
   screen::FrameOptions options;
@@ -153,7 +153,7 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
 }
 
 void BenchCommand::run_voxelize(nlohmann::json& results) const {
-  const gl::Context context(device);
+  const gl::Context context(device.context);
   for (const std::string& name : scenes_or({"atrium", "atrium_detail"})) {
     nlohmann::json& r = results["voxelize"].emplace_back(bench_voxelize(scene(name), largest_grid, frames));
     show(voxelize_table(r));
@@ -298,10 +298,10 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                    "folder that keeps the references of against-path-tracing; empty it when the path tracer changes")
       ->capture_default_str();
   command->add_option("--grid", options->grid_cells, "cells along the longest axis")
-      ->check(CLI::Range(1, VolumeOptions::kMostGridCells))
+      ->check(CLI::Range(1, VolumeOptions::kMaxGridCells))
       ->capture_default_str();
   command->add_option("--largest-grid", options->largest_grid, "cells on an edge, for propagation and voxelize")
-      ->check(CLI::Range(32, VolumeOptions::kMostGridCells))
+      ->check(CLI::Range(32, VolumeOptions::kMaxGridCells))
       ->capture_default_str();
   command->add_option("--iterations", options->iterations, "passes over the volume")
       ->check(CLI::Range(1, 100000))

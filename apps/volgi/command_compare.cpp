@@ -61,7 +61,7 @@ AskedLight light_from_name(const std::string& name) {
   return name == "indirect" ? AskedLight::indirect : AskedLight::full;
 }
 
-Region region_asked_for(const CompareOptions& options, const ReferenceFile& reference) {
+Region requested_region(const CompareOptions& options, const ReferenceFile& reference) {
   const Region region = *region_from_name(options.region.value_or("noedge"));
   if (reference.layers || region == Region::all) return region;
   if (options.region)
@@ -173,7 +173,7 @@ int compare(const CompareOptions& options) {
   if (options.energy) parse_range(*options.energy);
   check_maps(options);
   const ReferenceFile reference = read_reference(options.reference, light_from_name(options.light));
-  const Region region = region_asked_for(options, reference);
+  const Region region = requested_region(options, reference);
   const Mask mask = reference.layers ? region_mask(region, *reference.layers) : Mask(reference.color.pixels.size(), 1);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string table, failures;

@@ -34,7 +34,7 @@ struct ReferenceOptions {
   bool quiet = false;
 };
 
-PathTracerOptions::Light asked_light(const std::string& light) {
+PathTracerOptions::Light requested_light(const std::string& light) {
   if (light == "direct") return PathTracerOptions::Light::direct;
   return light == "indirect" ? PathTracerOptions::Light::indirect : PathTracerOptions::Light::full;
 }
@@ -43,7 +43,7 @@ ReferencePicture traced(const ReferenceOptions& options) {
   PathTracerOptions tracer = options.tracer;
   tracer.size = options.scene.size();
   tracer.max_bounces = options.bounces;
-  tracer.light = asked_light(options.light);
+  tracer.light = requested_light(options.light);
   if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
   const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
   warn_of_open_scene(scene, glm::vec3(options.scene.camera(scene).world_from_camera[3]));
@@ -55,7 +55,7 @@ ReferencePicture gathered(const ReferenceOptions& options) {
     throw Error(ExitCode::usage, "--filter box: --vpls gathers at pixel centres only, leave --filter out");
   VirtualLightGatherOptions gather;
   gather.size = options.scene.size();
-  gather.light = asked_light(options.light);
+  gather.light = requested_light(options.light);
   gather.seed = options.tracer.seed;
   gather.threads = options.tracer.threads;
   if (options.visibility == "none") gather.visibility = VirtualLightGatherOptions::Visibility::none;

@@ -98,7 +98,7 @@ void RenderCommand::write_picture(const screen::Frame& picture, const std::files
   }
 }
 
-/// The same picture, as often as asked for, for its times.
+/// Renders the same picture `frames` times, to time it.
 TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const {
   const Camera camera = scene.camera(loaded);
   // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a

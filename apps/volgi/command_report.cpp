@@ -40,7 +40,7 @@ struct ReportOptions {
   bool quick = false, page_only = false, quiet = false;
 };
 
-Sweep asked_sweep(const ReportOptions& options) {
+Sweep requested_sweep(const ReportOptions& options) {
   const std::string name = options.quick ? "quick.json" : "full.json";
   Sweep sweep;
   if (options.sweep_file.empty()) {
@@ -98,8 +98,8 @@ int print_repeated(const Repeated& repeated) {
       "{} points measured again: {} with the same figures to the last digit, {} with a time in the stated spread\n",
       repeated.points, repeated.points - int(repeated.different.size()), repeated.in_spread);
   if (repeated.points > 0) {
-    const auto [least, most] = std::minmax_element(repeated.times_as_long.begin(), repeated.times_as_long.end());
-    fmt::print("times: {:.2f} to {:.2f} of those stated\n", *least, *most);
+    const auto [smallest, largest] = std::minmax_element(repeated.times_as_long.begin(), repeated.times_as_long.end());
+    fmt::print("times: {:.2f} to {:.2f} of those stated\n", *smallest, *largest);
   }
   for (const std::string& text : repeated.different) fmt::print(stderr, "volgi report: {}\n", text);
   return int(repeated.different.empty() ? ExitCode::done : ExitCode::comparison_failed);
@@ -122,7 +122,7 @@ void write_report(const Report& report, const ReportOptions& options) {
 
 int run(const ReportOptions& options, const std::string& command) {
   set_quiet(options.quiet);
-  const Sweep sweep = asked_sweep(options);
+  const Sweep sweep = requested_sweep(options);
   SceneOptions asked;
   asked.size_text = sweep.size;
   const glm::ivec2 size = asked.size();

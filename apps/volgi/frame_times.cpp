@@ -40,9 +40,9 @@ FrameTimes parse_frame_times(const std::string& text) {
   if (!(frames_per_s > 0.0)) refuse(text, "FPS must be above 0");
   // A time that is a frame's but for rounding is a frame's.
   const double steps = std::floor((last_s - first_s) * frames_per_s * (1.0 + 1e-12) + 1e-9);
-  if (!(steps + 1.0 <= FrameTimes::kMost)) {
+  if (!(steps + 1.0 <= FrameTimes::kMaxCount)) {
     refuse(text, fmt::format("makes {:.0f} frames, more than {}; give a shorter time or a lower FPS", steps + 1.0,
-                             FrameTimes::kMost));
+                             FrameTimes::kMaxCount));
   }
   return {first_s, frames_per_s, int(steps) + 1};
 }

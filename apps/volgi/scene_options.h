@@ -29,7 +29,7 @@ struct SceneOptions {
   void add_to(CLI::App& command);
   /// @throws Error(usage) when the text is not WxH with both in 1 ... 16384.
   glm::ivec2 size() const;
-  /// The camera asked for; the file's first one; or, with a warning, one that frames the bounds.
+  /// The requested camera; the file's first one; or, with a warning, one that frames the bounds.
   /// @throws Error(usage) for a camera that does not exist, naming how many there are.
   Camera camera(const Scene& scene) const;
 };

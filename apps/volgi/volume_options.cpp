@@ -51,7 +51,7 @@ const char* scheme_name(Scheme scheme) {
 
 void VolumeCommandOptions::add_to(CLI::App& command) {
   command.add_option("--grid", grid_cells, "cells along the longest axis of the scene")
-      ->check(CLI::Range(1, VolumeOptions::kMostGridCells))
+      ->check(CLI::Range(1, VolumeOptions::kMaxGridCells))
       ->capture_default_str();
   command.add_option("--scheme", scheme, "how the volume propagates light")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))

@@ -86,10 +86,10 @@ std::vector<float> read_texture(GLuint id, GLenum format, GLenum type, size_t co
 }  // namespace
 
 Buffer::Buffer(size_t bytes, const void* data, GLbitfield flags) : bytes_(std::max<size_t>(bytes, 16)) {
-  const auto most = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
-  if (bytes_ > most) {
+  const auto max_bytes = static_cast<size_t>(limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE));
+  if (bytes_ > max_bytes) {
     throw Error(ExitCode::over_limit, "a GPU buffer of " + std::to_string(bytes_) + " bytes exceeds this GPU's " +
-                                          std::to_string(most) +
+                                          std::to_string(max_bytes) +
                                           " bytes; use a smaller grid or picture, or fewer lights or triangles");
   }
   GLuint id = 0;

@@ -83,7 +83,7 @@ class Buffer {
   size_t bytes_ = 0;
 };
 
-/// Room for `bytes`: a new buffer where there is none as large. What was in it is lost then.
+/// Makes room for `bytes`: replaces the buffer by a larger one where it is too small, which loses what was in it.
 void reserve(Buffer& buffer, size_t bytes);
 /// `data` at the beginning of the buffer: a new one only where that does not fit.
 template <class T>

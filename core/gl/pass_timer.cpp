@@ -200,8 +200,8 @@ std::vector<PassTimer::PassTime> PassTimer::medians() {
 PassTimer::FrameTime PassTimer::frame_time() const {
   const std::deque<double>& ms = data_->frames_ms;
   if (ms.empty()) return {0.0, 0.0, 0.0};
-  const auto [least, most] = std::minmax_element(ms.begin(), ms.end());
-  return {*least, median({ms.begin(), ms.end()}), *most};
+  const auto [smallest, largest] = std::minmax_element(ms.begin(), ms.end());
+  return {*smallest, median({ms.begin(), ms.end()}), *largest};
 }
 
 void PassTimer::reset() {

@@ -162,14 +162,14 @@ void dispatch(glm::ivec3 size, glm::ivec3 local) {
 
 void dispatch_linear(size_t count, size_t group_size) {
   const size_t most =
-      std::numeric_limits<GLint>::max() - GROUPS_A_ROW * group_size;  // the last row is dispatched whole
+      std::numeric_limits<GLint>::max() - GROUPS_PER_ROW * group_size;  // the last row is dispatched whole
   if (count > most) {
     throw Error(ExitCode::over_limit, "a pass over " + std::to_string(count) + " elements exceeds the " +
                                           std::to_string(most) + " that it can count; use a smaller grid or picture");
   }
   const size_t groups = (count + group_size - 1) / group_size;
-  const size_t rows = (groups + GROUPS_A_ROW - 1) / GROUPS_A_ROW;
-  if (rows > 0) glDispatchCompute(GLuint(std::min<size_t>(groups, GROUPS_A_ROW)), GLuint(rows), 1);
+  const size_t rows = (groups + GROUPS_PER_ROW - 1) / GROUPS_PER_ROW;
+  if (rows > 0) glDispatchCompute(GLuint(std::min<size_t>(groups, GROUPS_PER_ROW)), GLuint(rows), 1);
 }
 
 void dispatch_indirect(const Buffer& groups) {

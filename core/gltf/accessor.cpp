@@ -10,7 +10,7 @@
 namespace volgi::gltf {
 namespace {
 
-constexpr size_t most_unbacked_elements = size_t(1) << 24;  // of an accessor that is zero but for sparse values
+constexpr size_t max_unbacked_elements = size_t(1) << 24;  // of an accessor that is zero but for sparse values
 
 size_t component_size(int component_type) {
   const int size = tinygltf::GetComponentSizeInBytes(std::uint32_t(component_type));
@@ -129,7 +129,7 @@ Layout layout(const Document& document, const tinygltf::Accessor& accessor, cons
   if (accessor.type == TINYGLTF_TYPE_MAT3 && size < 4) result.element_size = size == 1 ? 12 : 24;
   if (accessor.bufferView >= 0) {
     result.base = locate(document, accessor.bufferView, accessor.byteOffset, accessor.count, result.element_size, who);
-  } else if (accessor.count > most_unbacked_elements) {
+  } else if (accessor.count > max_unbacked_elements) {
     refuse(document.path, fmt::format("{}: {} elements without data", who, accessor.count));
   }
   if (accessor.sparse.isSparse) result.sparse = locate_sparse(document, accessor, result.element_size, who);

@@ -24,7 +24,7 @@ struct Document {
   tinygltf::Model model;
 };
 
-// --- gltf_error.cpp
+// --- error.cpp
 /// @throws Error(bad_input) "FILE: WHAT", on one line of bounded length whatever the file's names contain.
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what);
 void warn(const std::filesystem::path& file, std::string_view what);
@@ -33,23 +33,23 @@ std::string element(std::string_view kind, size_t index, const std::string& name
 /// Refuses unless 0 <= index < size; WHO is the element that refers, KIND what it refers to.
 void check_index(const Document& document, int index, size_t size, const std::string& who, std::string_view kind);
 
-// --- gltf_json.cpp: before tinygltf sees the text
+// --- json.cpp: before tinygltf sees the text
 /// Files that the JSON refers to, by the name under which tinygltf will ask for them.
 using ExternalFiles = std::map<std::string, std::filesystem::path>;
 /// Refuses nesting deeper than any scene needs, properties of a wrong type (tinygltf would use their defaults),
 /// unsupported required extensions, and URIs that are missing or leave the file's folder.
 ExternalFiles check_json(const std::filesystem::path& file, std::string_view text);
 
-// --- gltf_uri.cpp
+// --- uri.cpp
 /// Path of a relative URI. Refuses what is absolute, leaves the folder (also through a link) or is not a regular file.
 std::filesystem::path resolve_uri(const std::filesystem::path& file, const std::string& who, const std::string& uri);
 /// tinygltf also turns '+' into a space.
 std::string tinygltf_decoded(const std::string& uri);
 
-// --- gltf_document.cpp
+// --- document.cpp
 Document read_document(const std::filesystem::path& path);
 
-// --- gltf_accessor.cpp
+// --- accessor.cpp
 /// Elements of an accessor as floats; normalized integers already in [-1,1] or [0,1].
 struct Elements {
   size_t components = 0;  // per element
@@ -75,7 +75,7 @@ std::vector<std::uint32_t> read_indices(const Document& document, int accessor, 
 /// Refuses any accessor of the file that lies outside its data, used or not, before anything is allocated for it.
 void check_accessors(const Document& document);
 
-// --- gltf_material.cpp, gltf_texture.cpp
+// --- material.cpp, texture.cpp
 struct Materials {
   std::vector<Material> materials;  // those of the file, then the default material if a primitive needs it
   std::vector<TextureImage> images;
@@ -99,7 +99,7 @@ class TextureTable {
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);
 
-// --- gltf_mesh.cpp
+// --- mesh.cpp
 /// A primitive in the frame of the nodes that show it. Without normals its corners are unshared.
 struct Primitive {
   int material = 0;
@@ -112,7 +112,7 @@ struct Primitive {
 /// Primitives with triangles; the material of those without one is `default_material`.
 std::vector<Primitive> read_mesh(const Document& document, size_t mesh, int default_material);
 
-// --- gltf_node.cpp
+// --- node.cpp
 struct Node {
   std::string name;
   int parent = -1;
@@ -129,7 +129,7 @@ std::vector<int> scene_nodes(const Document& document, const std::vector<Node>& 
 std::vector<glm::dmat4> world_from_nodes(const std::filesystem::path& file, const std::vector<Node>& nodes,
                                          const std::vector<int>& order);
 
-// --- gltf_animation.cpp
+// --- animation.cpp
 struct Channel {
   enum class Path { translation, rotation, scale };
   enum class Interpolation { linear, step, cubic };
@@ -143,7 +143,7 @@ struct Channel {
 std::vector<Channel> read_channels(const Document& document, const std::vector<Node>& nodes);
 void animate(std::vector<Node>& nodes, const std::vector<Channel>& channels, double time_s);
 
-// --- gltf_light_camera.cpp: as in the file, in the node's frame
+// --- light_camera.cpp: as in the file, in the node's frame
 std::vector<Light> read_lights(const Document& document);
 std::vector<Camera> read_cameras(const Document& document);
 Light place_light(Light light, const glm::dmat4& world_from_node, const glm::dvec3& world_origin);
@@ -152,7 +152,7 @@ Camera place_camera(const std::filesystem::path& file, Camera camera, const glm:
                     const glm::dvec3& world_origin);
 void finite_far_plane(Camera& camera, glm::vec3 bounds_min, glm::vec3 bounds_max);
 
-// --- gltf_place.cpp
+// --- place.cpp
 struct PlacedMesh {
   Mesh mesh;                          // without positions until the origin is known
   std::vector<glm::dvec3> positions;  // world

@@ -12,7 +12,7 @@ namespace volgi::gltf {
 namespace {
 
 constexpr int largest_edge = 32768;
-constexpr std::int64_t most_pixels = std::int64_t(1) << 28;  // 1 GiB of RGBA
+constexpr std::int64_t max_pixels = std::int64_t(1) << 28;  // 1 GiB of RGBA
 
 /// glTF allows PNG and JPEG; stb's decoders of other formats are never let near a file.
 bool is_png_or_jpeg(Bytes bytes) {
@@ -96,7 +96,7 @@ TextureImage decode_image(const Document& document, size_t index) {
                      stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels) != 0;
   if (!known) refuse(document.path, fmt::format("{} is neither a PNG nor a JPEG that can be read", name));
   if (width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
-      std::int64_t(width) * height > most_pixels) {
+      std::int64_t(width) * height > max_pixels) {
     refuse(document.path, fmt::format("{} has {}x{} pixels, which is too large", name, width, height));
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(

@@ -59,7 +59,7 @@ bool coplanar(const Scene& scene, TriangleIndex a, TriangleIndex b) {
   return std::abs(glm::dot(unit_normal(scene, a), unit_normal(scene, b))) > kParallel;
 }
 
-bool lets_pass(const QueryContext& query, TriangleIndex index, float distance, float u, float v) {
+bool lets_ray_through(const QueryContext& query, TriangleIndex index, float distance, float u, float v) {
   const Ray& ray = *query.ray;
   const Scene& scene = *query.shared->scene;
   if (index == ray.from || index == ray.to) return true;
@@ -76,7 +76,7 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const auto& query = *reinterpret_cast<const QueryContext*>(args->context);
   const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
   const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
-  if (args->valid[0] != 0 && lets_pass(query, {hit->geomID, hit->primID}, ray->tfar, hit->u, hit->v))
+  if (args->valid[0] != 0 && lets_ray_through(query, {hit->geomID, hit->primID}, ray->tfar, hit->u, hit->v))
     args->valid[0] = 0;
 }
 

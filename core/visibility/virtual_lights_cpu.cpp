@@ -23,7 +23,7 @@ namespace {
 
 using shared::VirtualLight;
 
-constexpr float kLeastCosine = 0.05f;  // docs/conventions.md#virtual-lights
+constexpr float kMinCosine = 0.05f;  // docs/conventions.md#virtual-lights
 constexpr int kAnyResolution = 256;    // of a sun's layer: the margin that it makes is taken off again
 
 /// A part of what a punctual light sends.
@@ -78,7 +78,7 @@ VirtualLight end_of(const EmbreeScene& embree, const LightRay& ray, int source, 
   const bool sun = light.type == Light::Type::directional;
   const float window = sun ? 1.0f : shared::range_window(to_shared(light), hit.distance);
   const float squared = sun ? 1.0f : hit.distance * hit.distance;
-  const float area_m2 = ray.measure * squared / std::max(std::abs(slope), kLeastCosine);
+  const float area_m2 = ray.measure * squared / std::max(std::abs(slope), kMinCosine);
   const glm::vec3 normal = slope < 0.0f ? at.geometric_normal : -at.geometric_normal;
   return {at.position, area_m2, normal, VIRTUAL_LIGHT_REFLECTED, ray.power * window * at.albedo, source};
 }

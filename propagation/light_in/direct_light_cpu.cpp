@@ -12,12 +12,12 @@ namespace {
 // Rays of a spot's layer through one cell's edge where the layer sees the grid across its edge (a sun's has twice as
 // many): a lit cell gets some 16 samples or more. All power is known beforehand; what few rays get wrong is where edges
 // of albedo lie: 1e-4 of the light of cornell, room and thin_wall at 512, 3e-4 at 256, against 2048.
-constexpr int kRaysACellEdge = 4;
-constexpr int kLeastRays = 512;
-constexpr int kMostRays = 1024;
+constexpr int kRaysPerCellEdge = 4;
+constexpr int kMinRays = 512;
+constexpr int kMaxRays = 1024;
 
 int light_texels(const Grid& grid) {
-  return std::clamp(kRaysACellEdge * std::max({grid.cells.x, grid.cells.y, grid.cells.z}), kLeastRays, kMostRays);
+  return std::clamp(kRaysPerCellEdge * std::max({grid.cells.x, grid.cells.y, grid.cells.z}), kMinRays, kMaxRays);
 }
 
 }  // namespace

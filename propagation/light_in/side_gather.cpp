@@ -16,7 +16,7 @@ namespace {
 using shared::Side;
 using shared::VirtualLight;
 
-constexpr float kLikeNormals = 0.70710678f;  // within 45 degrees
+constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
 // The slicing passes round vertices to half a step, which moves a surface along the axis that its normal is nearest to
 // by 3/2 steps at most. Nearer to the surface than that, a cell's centre may lie on it or behind it.
 constexpr float kRounded = 2.0f / float(SLICE_STEPS);  // cells
@@ -44,7 +44,7 @@ bool meets(const EmbreeScene& embree, const Side& side, float depth_from_centre,
   const glm::vec3 a = mesh.positions[t.x];
   const glm::vec3 across = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
   const float facing = std::abs(glm::dot(across, side.normal));
-  if (!(facing >= kLikeNormals * glm::length(across))) return false;
+  if (!(facing >= kSimilarNormalCosine * glm::length(across))) return false;
   start.position = origin + along * hit.distance;
   start.origin = embree.leaving_point(start.position, along, hit.distance);
   start.from = hit.index();
@@ -115,7 +115,7 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
 }
 
 glm::vec3 irradiance_of_piece(const EmbreeScene& embree, const Side& side, const Start& start,
-                              const shared::LightPiece& piece, std::uint32_t seed) {
+                              const shared::SubLight& piece, std::uint32_t seed) {
   const Disk disk{piece.position, octahedral_decode(piece.normal), piece.flux, piece.area_m2};
   return irradiance_of(embree, side, start, disk, embree.leaving_point(disk.position, -disk.normal, FAR), seed);
 }
@@ -129,16 +129,16 @@ float far_share_at(glm::vec3 point, glm::vec3 position, float area_m2, float zon
 
 /// Of a light's pieces: its quarters, and nearer by half the parts of those. As near_lights.comp.glsl has it.
 glm::vec3 irradiance_of_pieces(const EmbreeScene& embree, const Side& side, const Start& start,
-                               std::span<const shared::LightPiece> pieces, float zone, std::uint32_t seed) {
-  constexpr size_t PARTS_A_QUARTER = LIGHT_PARTS / LIGHT_QUARTERS;
+                               std::span<const shared::SubLight> pieces, float zone, std::uint32_t seed) {
+  constexpr size_t PARTS_A_QUARTER = FINE_SUBLIGHTS / COARSE_SUBLIGHTS;
   glm::vec3 sum(0.0f);
-  for (size_t quarter = 0; quarter < LIGHT_QUARTERS; ++quarter) {
-    const shared::LightPiece& whole = pieces[quarter];
+  for (size_t quarter = 0; quarter < COARSE_SUBLIGHTS; ++quarter) {
+    const shared::SubLight& whole = pieces[quarter];
     const float far = far_share_at(start.position, whole.position, whole.area_m2, zone);
     if (far > 0.0f) sum += far * irradiance_of_piece(embree, side, start, whole, seed);
     if (far >= 1.0f) continue;
     for (size_t k = 0; k < PARTS_A_QUARTER; ++k) {
-      const shared::LightPiece& part = pieces[LIGHT_QUARTERS + quarter * PARTS_A_QUARTER + k];
+      const shared::SubLight& part = pieces[COARSE_SUBLIGHTS + quarter * PARTS_A_QUARTER + k];
       sum += (1.0f - far) * irradiance_of_piece(embree, side, start, part, seed + std::uint32_t(k));
     }
   }
@@ -162,7 +162,7 @@ int automatic_stride(size_t sides, size_t lights) {
 std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
                                    const VirtualLightsForSides& from, size_t first, size_t end, int stride) {
   assert(stride >= 1 && end <= from.lights.size());
-  assert(from.pieces.empty() || from.pieces.size() >= from.lights.size() * LIGHT_PIECES);
+  assert(from.pieces.empty() || from.pieces.size() >= from.lights.size() * SUBLIGHTS_PER_LIGHT);
   std::vector<glm::vec3> ends(from.lights.size());
   for (size_t i = first; i < end; ++i)
     ends[i] = embree.leaving_point(from.lights[i].position, -from.lights[i].normal, FAR);
@@ -186,7 +186,7 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
     for (size_t k = first; k < end && !from.pieces.empty(); ++k) {
       const float share = 1.0f - share_of_light(from, k, start.position);
       if (share <= 0.0f) continue;
-      const std::span<const shared::LightPiece> pieces(&from.pieces[k * LIGHT_PIECES], LIGHT_PIECES);
+      const std::span<const shared::SubLight> pieces(&from.pieces[k * SUBLIGHTS_PER_LIGHT], SUBLIGHTS_PER_LIGHT);
       near += share * irradiance_of_pieces(embree, side, start, pieces, from.near_zone, seed_of(k));
     }
     irradiance[i] = glm::vec4(far * float(stride) + near, 0.0f);

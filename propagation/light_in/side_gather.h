@@ -29,8 +29,8 @@ int automatic_stride(size_t sides, size_t lights);
 struct VirtualLightsForSides {
   std::vector<shared::VirtualLight> lights;  // reflected ones first
   int reflected = 0;
-  /// Parts of each light, LIGHT_PIECES of them, that light what is near it; none: the lights do that themselves.
-  std::vector<shared::LightPiece> pieces;
+  /// Parts of each light, SUBLIGHTS_PER_LIGHT of them, that light what is near it; none: the lights do that themselves.
+  std::vector<shared::SubLight> pieces;
   float near_zone = 0.0f;  // areas of a light (shared::far_share)
 };
 

@@ -53,7 +53,7 @@ void LobeVolume::add_slots() {
   const size_t bytes = chunk_bytes(chunk_leaves_, leaf_floats_);
   void* p = std::aligned_alloc(bytes % kHugePage == 0 ? kHugePage : 4096, bytes);
   if (p == nullptr) throw std::bad_alloc();
-  if (bytes % kHugePage == 0) madvise(p, bytes, MADV_HUGEPAGE);  // a wish: nothing is lost without
+  if (bytes % kHugePage == 0) madvise(p, bytes, MADV_HUGEPAGE);  // a hint: nothing depends on it
   const size_t first = chunks_.size() * chunk_leaves_;
   chunks_.emplace_back(static_cast<float*>(p));
   rows_written_.resize(first + chunk_leaves_);

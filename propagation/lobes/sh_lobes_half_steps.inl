@@ -10,12 +10,12 @@ template <class Order, int kAxis, int kSign>
 VOLGI_INLINE Mask nearer_half(const Row* cell, const Row* across, Mask open, Row* out) {
   const Row own_share = open ? Row{} + 0.375f : Row{} + 0.5f, share_across = select(open, Row{} + 0.125f);
   for (int k = 0; k < Order::kCoefficients; ++k) out[k] = own_share * cell[k] + share_across * across[k];
-  const Row most = passed<Order, kAxis, kSign>(cell), now = passed<Order, kAxis, kSign>(out);
+  const Row limit = passed<Order, kAxis, kSign>(cell), now = passed<Order, kAxis, kSign>(out);
   const Mask some = now > 0.0f;
-  const Row limited = most < now ? most : now;
+  const Row limited = limit < now ? limit : now;
   const Row factor = select(some, limited / (some ? now : Row{} + 1.0f));
   for (int k = 0; k < Order::kCoefficients; ++k) out[k] *= factor;
-  return most > 0.0f;
+  return limit > 0.0f;
 }
 
 /// Adds what comes in across the two faces of an axis, and what stays of what moves along it: that crosses a face of

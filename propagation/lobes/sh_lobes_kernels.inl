@@ -52,10 +52,10 @@ VOLGI_INLINE HalfRow select(HalfMask m, HalfRow a) { return m ? a : HalfRow{}; }
 #endif
 VOLGI_INLINE float select(bool m, float a) { return m ? a : 0.0f; }
 
-/// Where the power through a face is zero, that is not a matter of rounding (FLUX_LEAST).
+/// Where the power through a face is zero, that is not a matter of rounding (FLUX_MIN_SHARE).
 template <class T>
 VOLGI_INLINE auto passes(T power, const T* l) {
-  return power > FLUX_LEAST * l[0];
+  return power > FLUX_MIN_SHARE * l[0];
 }
 
 /// Lobes of order 1: the flux of radiance through the face, projected on four coefficients.
@@ -320,7 +320,7 @@ VOLGI_INLINE Around of_band(const float* own, const float* const* beside, int ba
 constexpr auto kAllOpen = [](int) { return Mask{} == 0; };
 
 template <class Order>
-VOLGI_INLINE void fetch_ahead(const float* cells) {
+VOLGI_INLINE void prefetch(const float* cells) {
   for (int k = 0; k < Order::kCoefficients; ++k) __builtin_prefetch(cells + k * kStride, 0, 2);
 }
 
@@ -331,7 +331,7 @@ void gather(const float* own, const float* const beside[6], const std::uint64_t*
     const Around around = of_band(own, beside, band);
     for_rows(
         rows, [&](int at) __attribute__((always_inline)) {
-          fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
+          prefetch<Order>(ahead + lobe_block(0, band) + at);
           Row l[Order::kCoefficients];
           if (closed_at(closed, at) == 0) {
             gather_row<Order>(around, at, kAllOpen, l);
@@ -390,7 +390,7 @@ void gather_rescale_to(const float* own, const float* const beside[6], const flo
     Tally tally;
     for_rows(
         rows, [&](int at) __attribute__((always_inline)) {
-          fetch_ahead<Order>(ahead + lobe_block(0, band) + at);
+          prefetch<Order>(ahead + lobe_block(0, band) + at);
           Row l[Order::kCoefficients];
           gather_row<Order>(around, at, kAllOpen, l);
           tally.add(at, l[0]);

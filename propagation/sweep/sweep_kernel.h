@@ -10,19 +10,19 @@ constexpr int kBlockFace = kBlockCells * kBlockCells;
 constexpr int kBlockVolume = kBlockFace * kBlockCells;
 constexpr int kQuad = 4;   // floats of a power: r, g, b and one more
 constexpr int kOctet = 8;  // lanes that are taken together at least
-constexpr int kMostOctets = 6;
-constexpr int kMostLanes = kMostOctets * kOctet;
+constexpr int kMaxOctets = 6;
+constexpr int kMaxLanes = kMaxOctets * kOctet;
 
 /// Lanes are directions x bands of an octant, in octets of two quads: r, g and b of one direction each. The fourth
 /// lanes of three octets hold r, g and b of two more directions, where that saves an octet: 1, 3, 6, 10 and 16
 /// directions take 1, 2, 3, 4 and 6 octets. Lanes without a direction have constants of zero and stay zero.
 struct alignas(64) Constants {
-  float share[3][3][kMostLanes] = {};   // [in][out] of CellTransfer; the step kernel reads share[0] alone
-  float emitted[3][kMostLanes] = {};    // by axis, of a side's power
-  float track[3][kMostLanes] = {};      // radiance_per_watt by upwind axis [m^-2]
-  float sh[4][kMostLanes] = {};         // Y_00, Y_1-1, Y_10, Y_11 of the directions of the octant (+,+,+)
-  float fold[kMostOctets][kQuad] = {};  // which band the fourth lanes of an octet hold: one-hot, or zero
-  int fourth[kMostOctets] = {};         // the same as a number; 0 where they hold nothing
+  float share[3][3][kMaxLanes] = {};   // [in][out] of CellTransfer; the step kernel reads share[0] alone
+  float emitted[3][kMaxLanes] = {};    // by axis, of a side's power
+  float track[3][kMaxLanes] = {};      // radiance_per_watt by upwind axis [m^-2]
+  float sh[4][kMaxLanes] = {};         // Y_00, Y_1-1, Y_10, Y_11 of the directions of the octant (+,+,+)
+  float fold[kMaxOctets][kQuad] = {};  // which band the fourth lanes of an octet hold: one-hot, or zero
+  int fourth[kMaxOctets] = {};         // the same as a number; 0 where they hold nothing
   int octets = 0;
 };
 

@@ -24,7 +24,7 @@ struct Step {
     x = y = z = share[0] * x + others;  // x was known last: a row waits for one multiplication a cell
   }
   // Power in by the three faces; what is carried on, and what leaves.
-  VOLGI_INLINE void hand_on(const V* in, V* carried, V* leaves) const {
+  VOLGI_INLINE void pass_on(const V* in, V* carried, V* leaves) const {
     const V power = in[0] + in[1] + in[2];
     for (int a = 0; a < 3; ++a) {
       carried[a] = power;
@@ -57,7 +57,7 @@ struct Characteristic {
     y = leaving(1, from[0], from[1], from[2]);
     z = leaving(2, from[0], from[1], from[2]);
   }
-  VOLGI_INLINE void hand_on(const V* in, V* carried, V* leaves) const {
+  VOLGI_INLINE void pass_on(const V* in, V* carried, V* leaves) const {
     for (int a = 0; a < 3; ++a) carried[a] = leaves[a] = leaving(a, in[0], in[1], in[2]);
   }
 };
@@ -168,7 +168,7 @@ VOLGI_INLINE void visit_lanes(const Constants& c, const Sides& s, Rows rows, int
     if (s.upwind[a] == nullptr) continue;
     in[a] = in[a] * s.upwind[a][3] + load<kLanes>(c.emitted[a] + lane) * spread<kOctets, kLanes>(c, octet, s.upwind[a]);
   }
-  rule.hand_on(in, carried, leaves);
+  rule.pass_on(in, carried, leaves);
   store<kLanes>(at[0], carried[0]);
   if constexpr (!Rule<kLanes>::kCarriesCells) store<kLanes>(at[1], carried[1]);
   store<kLanes>(at[2], carried[2]);

@@ -5,7 +5,7 @@
 namespace volgi::screen {
 
 size_t padded_count(const VirtualLightListGl& list) {
-  return (size_t(std::max(list.count() - 1, 0)) / VIRTUAL_LIGHTS_A_BLOCK + 1) * VIRTUAL_LIGHTS_A_BLOCK;
+  return (size_t(std::max(list.count() - 1, 0)) / VIRTUAL_LIGHTS_PER_BLOCK + 1) * VIRTUAL_LIGHTS_PER_BLOCK;
 }
 
 std::vector<shared::VirtualLight> download(const VirtualLightListGl& list) {

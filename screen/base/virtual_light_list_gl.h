@@ -16,7 +16,7 @@ struct VirtualLightListGl {
   int count() const { return reflected + emitted; }
 };
 
-/// A multiple of VIRTUAL_LIGHTS_A_BLOCK, at least one, so that uniform blocks can be bound whole.
+/// A multiple of VIRTUAL_LIGHTS_PER_BLOCK, at least one, so that uniform blocks can be bound whole.
 size_t padded_count(const VirtualLightListGl& list);
 /// Waits for the GPU; after a frame, not in one.
 std::vector<shared::VirtualLight> download(const VirtualLightListGl& list);

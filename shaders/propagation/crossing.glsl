@@ -12,7 +12,7 @@ Lobe crossing(Lobe lobe, int axis, float sign) {
   vec4 moved = FLUX_ACROSS_11 * lobe;
   moved.x = power;
   moved[component] = sign * FLUX_10 * lobe.x + FLUX_11 * axial;
-  return power > FLUX_LEAST * lobe.x ? moved : dark_lobe();
+  return power > FLUX_MIN_SHARE * lobe.x ? moved : dark_lobe();
 }
 
 void keep_power(inout Lobe lobe) { lobe *= clamp_rescale(lobe); }
@@ -29,7 +29,7 @@ Lobe crossing(Lobe lobe, int axis, float sign) {
   float axial = sign * lobe.low[sh_component(axis)];
   vec2 square = about_axis(vec2(lobe.mid.z, lobe.high), axis);
   float power = FLUX_00 * all + FLUX_01 * axial + FLUX_02 * square.x;
-  if (power <= FLUX_LEAST * all) return dark_lobe();
+  if (power <= FLUX_MIN_SHARE * all) return dark_lobe();
   Lobe moved;
   moved.low[0] = power;
   moved.low[sh_component(axis)] = sign * (FLUX_10 * all + FLUX_11 * axial + FLUX_12 * square.x);

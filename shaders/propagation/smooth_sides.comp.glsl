@@ -18,7 +18,7 @@ layout(std430, binding = 7) writeonly buffer IndirectIrradiance { vec4 indirect_
 
 #include "propagation/neighbourhood.glsl"
 
-const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
+const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
 
 void main() {
   uint i = global_index();
@@ -33,7 +33,7 @@ void main() {
     uvec2 own_sides = cell_sides[cell_index(grid, centre + ivec3(k % 3 - 1, (k / 3) % 3 - 1, k / 9 - 1))];
     uint count = count_bits(own_sides.y & 63u);
     for (uint s = own_sides.x; s < own_sides.x + count; ++s) {
-      if (dot(sides[s].normal, normal) < LIKE_NORMALS) continue;
+      if (dot(sides[s].normal, normal) < SIMILAR_NORMAL_COSINE) continue;
       direct_sum += direct[s];
       indirect_sum += indirect[s];
     }

@@ -28,7 +28,7 @@ void main() {
     state.source_power = sum;
     state.share = quotient(sum, state.last_source_power);
   } else if (sums == BOUNCE_SUMS_CURVATURE) {
-    state.step_size = quotient(state.product, max(sum, BOUNCE_LEAST_LOSS * running[1][0]));
+    state.step_size = quotient(state.product, max(sum, BOUNCE_MIN_LOSS * running[1][0]));
   } else {
     if (sums == BOUNCE_SUMS_RESIDUAL) {
       state.turn = quotient(sum, state.product);

@@ -26,8 +26,8 @@ static_assert(sizeof(BounceState) == 128 && offsetof(BounceState, next_sent) == 
 #define BOUNCE_SUMS_CHANGE 3     // -, next, total
 
 #define BOUNCE_PARTIALS 64
-// No bounce is taken to lose less: a closed white room has no answer (BounceRules::kLeastLoss).
-#define BOUNCE_LEAST_LOSS 1e-4f
+// No bounce is taken to lose less: a closed white room has no answer (BounceRules::kMinLoss).
+#define BOUNCE_MIN_LOSS 1e-4f
 
 SHARED_END
 #endif

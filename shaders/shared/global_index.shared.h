@@ -4,7 +4,7 @@
 #define VOLGI_GLOBAL_INDEX_SHARED_H
 #include "shared/base.shared.h"
 
-#define GROUPS_A_ROW 32768
+#define GROUPS_PER_ROW 32768
 
 #ifndef __cplusplus
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }

@@ -1,23 +1,23 @@
-// Parts of virtual lights, which light what is near them.
+// Sub-lights of virtual lights, which light what is near them.
 #ifndef VOLGI_NEAR_LIGHT_SHARED_H
 #define VOLGI_NEAR_LIGHT_SHARED_H
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-// A virtual light is four quarters, a quarter four parts: neighbours on the curve of its source's samples.
-#define LIGHT_QUARTERS 4
-#define LIGHT_PARTS 16
-#define LIGHT_PIECES (LIGHT_QUARTERS + LIGHT_PARTS)  // quarters first
+// A virtual light is four coarse sub-lights, each of them four fine ones: neighbours on the curve of its source's samples.
+#define COARSE_SUBLIGHTS 4
+#define FINE_SUBLIGHTS 16
+#define SUBLIGHTS_PER_LIGHT (COARSE_SUBLIGHTS + FINE_SUBLIGHTS)  // coarse ones first
 
 // std430, 32 bytes. As VirtualLight.
-struct LightPiece {
+struct SubLight {
   vec3 position;
   float area_m2;
   vec3 flux;
   uint normal;  // octahedral, two times 16 bits
 };
 #ifdef __cplusplus
-static_assert(sizeof(LightPiece) == 32 && offsetof(LightPiece, flux) == 16);
+static_assert(sizeof(SubLight) == 32 && offsetof(SubLight, flux) == 16);
 #endif
 
 // What is near a light. std430, 48 bytes.
@@ -25,8 +25,8 @@ struct NearLight {
   vec3 position;
   float area_m2;
   vec3 normal;
-  float rise_m;    // least height over the light's plane of a point that any of its pieces lights
-  float spread_m;  // of its pieces around its position
+  float rise_m;    // smallest height over the light's plane of a point that any of its sub-lights lights
+  float spread_m;  // of its sub-lights around its position
   float unused_0, unused_1, unused_2;
 };
 #ifdef __cplusplus

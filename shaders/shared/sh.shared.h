@@ -14,7 +14,7 @@ SHARED_BEGIN
 // Component of the lobe that belongs to an axis: x -> w, y -> y, z -> z.
 SHARED_FUNCTION int sh_component(int axis) { return axis == 0 ? 3 : axis; }
 
-// Power of the lobe through `face` (FLUX_* of sh_constants.shared.h); below FLUX_LEAST of the lobe's it can be
+// Power of the lobe through `face` (FLUX_* of sh_constants.shared.h); below FLUX_MIN_SHARE of the lobe's it can be
 // negative: then nothing passes.
 SHARED_FUNCTION float flux_power(vec4 lobe, int face) {
   return FLUX_00 * lobe.x + ((face & 1) != 0 ? FLUX_01 : -FLUX_01) * lobe[sh_component(face >> 1)];
@@ -23,7 +23,7 @@ SHARED_FUNCTION float flux_power(vec4 lobe, int face) {
 // What really passes, lobe included.
 SHARED_FUNCTION float flux_passed(vec4 lobe, int face) {
   float power = flux_power(lobe, face);
-  return power > FLUX_LEAST * lobe.x ? power : 0.0f;
+  return power > FLUX_MIN_SHARE * lobe.x ? power : 0.0f;
 }
 
 // The six powers, clamped, sum to at least the lobe's power; this rescales the lobe so that they sum to it exactly.
@@ -78,7 +78,7 @@ SHARED_FUNCTION float flux_power(Lobe9 lobe, int face) {
 
 SHARED_FUNCTION float flux_passed(Lobe9 lobe, int face) {
   float power = flux_power(lobe, face);
-  return power > FLUX_LEAST * lobe.low.x ? power : 0.0f;
+  return power > FLUX_MIN_SHARE * lobe.low.x ? power : 0.0f;
 }
 
 SHARED_FUNCTION float clamp_rescale(Lobe9 lobe) {

@@ -41,7 +41,7 @@ const float FLUX_DIAGONAL = 0.1f;     // xy
 // A face passes nothing below this part of the lobe's power. The power behind what a single side sends (order 2) or
 // behind what of it has crossed a face sideways (order 1: 1/6 1/6 - sqrt3/9 1/8 2/sqrt3) is exactly zero but what would
 // be handed on with it is not: rounding must not decide. 2^-16: above rounding, too little to see.
-const float FLUX_LEAST = 1.0f / 65536.0f;
+const float FLUX_MIN_SHARE = 1.0f / 65536.0f;
 
 // A lobe of power 1 and of revolution about n has the coefficients z_l sqrt(4 pi) Y_lm(n) and the intensity
 // 1/(4 pi) sum z_l (2l+1) P_l(cos), with z_0 = 1.

@@ -83,7 +83,7 @@ SHARED_FUNCTION float side_weight(vec3 normal, int axis, float area_m2) {
 // A side stands for at least this part of a plane through its face. What a black side sends is flux * m/A: without a
 // least A, flux put down where little surface is counted grows without bound; with it at most to 4 s times. It costs
 // nothing measurable: furnaces are the same to seven digits, pictures of data/ to 0.5 % of their energy.
-#define SIDE_LEAST_FILL 0.25f
+#define SIDE_MIN_FILL 0.25f
 
 // Radiosity of a side from its flux: over its area, or over this part of a cell's face where that is smaller, as at the
 // rim of a surface.

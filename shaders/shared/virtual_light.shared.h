@@ -9,7 +9,7 @@ SHARED_BEGIN
 #define VIRTUAL_LIGHT_NEGATIVE 2   // to be subtracted: flux that a surface should have stopped
 
 // Lights in one uniform block: the least GL_MAX_UNIFORM_BLOCK_SIZE is 16 KiB, but every 4.5 driver in use has 64 KiB.
-#define VIRTUAL_LIGHTS_A_BLOCK 1024
+#define VIRTUAL_LIGHTS_PER_BLOCK 1024
 
 // std140 and std430, 48 bytes. Irradiance at x with unit normal n:
 // flux * cos_x * cos_l / (pi d^2 + area), cos_x = n.w, cos_l = -normal.w, w from x to the light.

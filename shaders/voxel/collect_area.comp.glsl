@@ -21,7 +21,7 @@ void main() {
   Side side = sides[i];
   if (face_axis(side.face) != axis) return;
   float area_m2 = float(area_fixed[i]) / 1048576.0 * grid.cell_size_m * grid.cell_size_m;
-  area_m2 = max(area_m2, SIDE_LEAST_FILL * side.face_m2 / staircase_factor(side.normal));
+  area_m2 = max(area_m2, SIDE_MIN_FILL * side.face_m2 / staircase_factor(side.normal));
   sides[i].area_m2 = area_m2;
   ivec3 upper = cell_coord(grid, side.cell);
   upper[axis] += side.face & 1;

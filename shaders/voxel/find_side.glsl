@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 
-const float LIKE_NORMALS = 0.70710678;  // within 45 degrees
+const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
 
 // Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, as a floor
 // does under a carpet: by more than the two planes can part within the half diagonal of a face (0.71 cells) when they are
@@ -50,7 +50,7 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_m
     int index = int(side_index(own_sides, face));
     if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
     float cosine = dot(sides[index].normal, normal);
-    if (cosine >= LIKE_NORMALS) found.x = index;
+    if (cosine >= SIMILAR_NORMAL_COSINE) found.x = index;
     if (cosine >= 0.0 && found.y < 0) found.y = index;
   }
   return found;

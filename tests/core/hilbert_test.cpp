@@ -31,14 +31,14 @@ TEST(Hilbert, WhatFollowsIsBeside) {
 // A piece of one part in 4^n that begins at a multiple of its length is a square.
 TEST(Hilbert, PiecesAreCompact) {
   for (std::uint32_t first = 0; first < 64; ++first) {
-    glm::vec2 least(2.0f), most(-1.0f);
+    glm::vec2 low(2.0f), high(-1.0f);
     for (std::uint32_t k = 0; k < 1024; ++k) {
       const glm::vec2 p = shared::hilbert_point((first << 26) + (k << 16));
-      least = glm::min(least, p);
-      most = glm::max(most, p);
+      low = glm::min(low, p);
+      high = glm::max(high, p);
     }
-    EXPECT_LE(most.x - least.x, 0.125f);
-    EXPECT_LE(most.y - least.y, 0.125f);
+    EXPECT_LE(high.x - low.x, 0.125f);
+    EXPECT_LE(high.y - low.y, 0.125f);
   }
 }
 

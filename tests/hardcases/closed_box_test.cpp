@@ -59,11 +59,11 @@ Deviation first_bounce_exact(float albedo, int cells, const SchemeOptions& schem
   bounces.run(voxels, flux, false, rules);
 
   std::vector<double> total(exact.first);
-  const int sides_an_edge = cells / kPatches;
-  const double sides_a_patch = double(sides_an_edge) * double(sides_an_edge);
+  const int sides_per_edge = cells / kPatches;
+  const double sides_per_patch = double(sides_per_edge) * double(sides_per_edge);
   for (size_t i = 0; i < voxels.side_count(); ++i) {
     total[walls.patch_of[i]] +=
-        double(bounces.received_indirect()[i].x) / double(voxels.sides()[i].area_m2) / sides_a_patch;
+        double(bounces.received_indirect()[i].x) / double(voxels.sides()[i].area_m2) / sides_per_patch;
   }
   double squares = 0.0, sum = 0.0, reference = 0.0;
   for (size_t i = 0; i < total.size(); ++i) {

@@ -28,9 +28,9 @@ Scene lit_corner() {
 }
 
 float maximum(const Image& image) {
-  float most = 0.0f;
-  for (const glm::vec3& p : image.pixels) most = std::max({most, p.x, p.y, p.z});
-  return most;
+  float largest = 0.0f;
+  for (const glm::vec3& p : image.pixels) largest = std::max({largest, p.x, p.y, p.z});
+  return largest;
 }
 
 class Corner : public GlTest {

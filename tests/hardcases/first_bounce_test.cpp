@@ -103,9 +103,9 @@ TEST_F(FirstBounce, NothingNegativeNorInfinite) {
   for (const char* name : {"cornell", "room", "occluder", "emissive", "thin_wall", "corridor"}) {
     const Scene scene = load(name);
     for (const Gi mode : kModes) {
-      for (const int one_of : {1, screen::ResampleOptions{}.candidates}) {
+      for (const int candidates_per_light : {1, screen::ResampleOptions{}.candidates}) {
         FrameOptions o = options(mode, 48);
-        o.of<screen::ResampleOptions>().candidates = one_of;
+        o.of<screen::ResampleOptions>().candidates = candidates_per_light;
         EXPECT_GT(mean_light(picture(scene, o)), 0.0) << name;
       }
     }
@@ -215,22 +215,22 @@ TEST_F(FirstBounce, VirtualLightsAgainstTheReferenceGather) {
 TEST_F(FirstBounce, ConvexRoomAgainstPaths) {
   const Scene scene = load("convex_box");
   const ReferencePicture reference = first_bounce(scene, 192, 64);
-  for (const int one_of : {1, screen::ResampleOptions{}.candidates}) {
+  for (const int candidates_per_light : {1, screen::ResampleOptions{}.candidates}) {
     double error[2] = {};
     for (const int more : {0, 1}) {
       FrameOptions o = options(Gi("vpl"), 192, more == 0 ? 1024 : 4096);
       o.light = LightPart::indirect;
-      o.of<screen::ResampleOptions>().candidates = one_of;
+      o.of<screen::ResampleOptions>().candidates = candidates_per_light;
       const auto relative = against(reference, picture(scene, o)).relative.value();
       error[more] = relative.rmse_pct_denoised.value();
-      record("convex_one_of_" + std::to_string(one_of) + (more == 0 ? "_1024" : "_4096"), error[more]);
-      record("convex_one_of_" + std::to_string(one_of) + (more == 0 ? "_1024" : "_4096") + "_energy", relative.ratio);
-      EXPECT_NEAR(relative.ratio, 1.0, 0.03) << one_of;
-      EXPECT_LT(error[more], more == 0 ? 10.0 : 6.0) << one_of;
+      record("convex_one_of_" + std::to_string(candidates_per_light) + (more == 0 ? "_1024" : "_4096"), error[more]);
+      record("convex_one_of_" + std::to_string(candidates_per_light) + (more == 0 ? "_1024" : "_4096") + "_energy", relative.ratio);
+      EXPECT_NEAR(relative.ratio, 1.0, 0.03) << candidates_per_light;
+      EXPECT_LT(error[more], more == 0 ? 10.0 : 6.0) << candidates_per_light;
     }
     const double exponent = std::log(error[0] / error[1]) / std::log(4.0);
-    record("convex_one_of_" + std::to_string(one_of) + "_exponent", exponent);
-    EXPECT_GT(exponent, 0.4) << one_of;
+    record("convex_one_of_" + std::to_string(candidates_per_light) + "_exponent", exponent);
+    EXPECT_GT(exponent, 0.4) << candidates_per_light;
   }
 }
 

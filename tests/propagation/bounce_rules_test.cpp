@@ -15,7 +15,7 @@ BounceRules with_albedo(float albedo) {
 
 TEST(BounceRules, AbsorptionIsBoundedBelow) {
   EXPECT_NEAR(with_albedo(0.7f).absorption(), 0.3f, 1e-6f);
-  EXPECT_EQ(with_albedo(1.0f).absorption(), BounceRules::kLeastAbsorption);
+  EXPECT_EQ(with_albedo(1.0f).absorption(), BounceRules::kMinAbsorption);
 }
 
 TEST(BounceRules, PulseEndsWhenTheSlowestBandHas) {
@@ -66,7 +66,7 @@ TEST(BounceRules, ChoosesTheSolver) {
   rules.bounces = 2;
   EXPECT_FALSE(rules.conjugate_gradients(true));
   rules = {};
-  rules.passes_a_run = 2;
+  rules.passes_per_run = 2;
   EXPECT_FALSE(rules.conjugate_gradients(true));
 }
 
@@ -78,10 +78,10 @@ TEST(BounceRules, ContinuesWhereAllBouncesAreAskedFor) {
   rules.bounces = 2;
   EXPECT_FALSE(rules.continues());
   rules = {};
-  rules.passes_a_run = 1;
+  rules.passes_per_run = 1;
   EXPECT_TRUE(rules.continues());
   EXPECT_EQ(rules.arrival_cycle(false), 2);
-  rules.passes_a_run = 5;
+  rules.passes_per_run = 5;
   EXPECT_EQ(rules.arrival_cycle(false), 5);
   EXPECT_EQ(rules.arrival_cycle(true), 2);
 }

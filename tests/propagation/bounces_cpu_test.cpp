@@ -255,7 +255,7 @@ int runs_until_near(Bounces& bounces, const VoxelGrid& voxels, const SideFlux& f
   int near = 0;
   for (int run = 1; run <= runs; ++run) {
     const BounceReport report = bounces.run(voxels, flux, true, rules);
-    EXPECT_LE(report.passes, *rules.passes_a_run);
+    EXPECT_LE(report.passes, *rules.passes_per_run);
     if (power_error(bounces.received_indirect(), exact) > 0.01) near = run;
   }
   return near + 1;
@@ -265,7 +265,7 @@ TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
   const SideFlux half = dimmed(glm::vec3(0.5f));
   const Answer full = series(flux_, true, kAll), dim = series(half, true, kAll);
   for (int passes : {1, 3}) {
-    rules_.passes_a_run = passes;
+    rules_.passes_per_run = passes;
     Bounces bounces = matrix();
     const int up = runs_until_near(bounces, voxels_, flux_, rules_, full.indirect, 120);
     EXPECT_LE(power_error(bounces.received_indirect(), full.indirect), 1e-5);  // 120 runs: no drift
@@ -274,14 +274,14 @@ TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
     RecordProperty("runs_up_" + std::to_string(passes), up);
     // Orders fall by 0.8 at least; of `passes` of them one renews the arrival (every other of single ones).
     const double orders = std::log(0.01) / std::log(0.8) + 2.0;
-    const double orders_a_run = passes == 1 ? 0.5 : double(passes - 1);
-    EXPECT_LE(up, orders / orders_a_run + 2.0);
+    const double orders_per_run = passes == 1 ? 0.5 : double(passes - 1);
+    EXPECT_LE(up, orders / orders_per_run + 2.0);
     EXPECT_LE(down, up);
   }
 }
 
 TEST_F(BouncesCpu, AmortisedPulseGoesOnInTheNextRun) {
-  rules_.passes_a_run = 4;
+  rules_.passes_per_run = 4;
   const Answer exact = series(flux_, false, kAll);
   Bounces bounces = pulse();
   Powers before = bounces.received_indirect();
@@ -343,14 +343,14 @@ TEST_F(BouncesCpu, RefusesWhatMakesNoSense) {
   rules.bounces = 3;
   EXPECT_TRUE(refused(matrix(), rules));
   rules = {};
-  rules.passes_a_run = 2;
+  rules.passes_per_run = 2;
   EXPECT_FALSE(refused(pulse(), rules));
   rules.iterations = 5;
   EXPECT_TRUE(refused(matrix(), rules));
   rules = {};
-  rules.passes_a_run = 0;
+  rules.passes_per_run = 0;
   EXPECT_TRUE(refused(matrix(), rules));
-  rules.passes_a_run = 2;
+  rules.passes_per_run = 2;
   rules.bounces = 1;
   EXPECT_TRUE(refused(matrix(), rules));
   rules.bounces.reset();

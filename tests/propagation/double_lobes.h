@@ -69,7 +69,7 @@ class DoubleLobes {
   }
   double passed(const Lobe& lobe, int face) const {
     const double power = through(lobe, face, 0);
-    return power > double(shared::FLUX_LEAST) * lobe[0] ? power : 0.0;
+    return power > double(shared::FLUX_MIN_SHARE) * lobe[0] ? power : 0.0;
   }
   void rescale(Lobe& lobe) const {
     double sum = 0.0;

@@ -129,7 +129,7 @@ class PlainPulse {
         const double tau = has_side ? double(voxels_.sides()[side].coverage) : 0.0;
         for (int band = 0; band < 3; ++band) {
           const double power = row(face, 0, at(lobes_, cell, band));
-          if (power <= kLeast * at(lobes_, cell, band)[0]) continue;
+          if (power <= kMinShareOfLobe * at(lobes_, cell, band)[0]) continue;
           if (has_side) received[side][band] += tau * power;
           if (has_side && reflect_hits)
             send(next, cell, face, band, tau * power * double(voxels_.sides()[side].albedo[band]));
@@ -167,7 +167,7 @@ class PlainPulse {
       double sum = 0.0;
       for (int face = 0; face < 6; ++face) {
         const double power = row(face, 0, &lobes[i]);
-        if (power > kLeast * lobes[i]) sum += power;
+        if (power > kMinShareOfLobe * lobes[i]) sum += power;
       }
       const double factor = sum > 0.0 ? lobes[i] / sum : 0.0;
       for (int k = 0; k < n_; ++k) lobes[i + size_t(k)] *= factor;
@@ -177,7 +177,7 @@ class PlainPulse {
 
   const VoxelGrid& voxels_;
   int n_;
-  static constexpr double kLeast = 0x1p-16;
+  static constexpr double kMinShareOfLobe = 0x1p-16;
   std::vector<double> lobes_;
   double transfer_[6][9][9] = {};
 };

@@ -78,14 +78,14 @@ class SolverGl : public GlTest {
 
   /// Largest difference over the largest power.
   static double difference(const Powers& a, const Powers& b) {
-    double most = 0.0, largest = 0.0;
+    double worst = 0.0, largest = 0.0;
     for (size_t i = 0; i < a.size(); ++i) {
       for (int band = 0; band < 3; ++band) {
-        most = std::max(most, double(std::abs(a[i][band] - b[i][band])));
+        worst = std::max(worst, double(std::abs(a[i][band] - b[i][band])));
         largest = std::max(largest, double(std::abs(b[i][band])));
       }
     }
-    return most / std::max(largest, 1e-30);
+    return worst / std::max(largest, 1e-30);
   }
 
   Scene scene_;
@@ -154,7 +154,7 @@ TEST_F(SolverGl, WarmStartsStayAndFollow) {
 
 TEST_F(SolverGl, AmortisedRunsAsOnTheCpu) {
   for (int passes : {1, 3}) {
-    rules_.passes_a_run = passes;
+    rules_.passes_per_run = passes;
     light(glm::vec3(1.0f));
     BouncesGl gpu(ordinates());
     Bounces cpu = twin();
@@ -170,7 +170,7 @@ TEST_F(SolverGl, AmortisedRunsAsOnTheCpu) {
 
 TEST_F(SolverGl, AmortisedPulsesGoOn) {
   light(glm::vec3(1.0f));
-  rules_.passes_a_run = 8;
+  rules_.passes_per_run = 8;
   BouncesGl whole(std::make_unique<WholeOrders>());
   try {
     run(whole);
@@ -192,7 +192,7 @@ TEST_F(SolverGl, AmortisedPulsesGoOn) {
   }
   EXPECT_LT(orders, 100);
   // The same equation, solved in one run.
-  rules_.passes_a_run.reset();
+  rules_.passes_per_run.reset();
   rules_.warm_start = true;
   BouncesGl at_once(std::make_unique<ConservativeTransportGl>(unit_grid(10)));
   EXPECT_TRUE(run(at_once).converged);

@@ -73,8 +73,8 @@ class TurnedGl : public GlTest {
     const Powers sent = random_powers(v.sides.size(), 51);
     auto plain = make(v.grid);
     const Powers expected = carry(*plain, upload(v), sent);
-    float most = 0.0f;
-    for (const glm::vec4& p : expected) most = std::max(most, p.x);
+    float largest = 0.0f;
+    for (const glm::vec4& p : expected) largest = std::max(largest, p.x);
     for (int axis = 0; axis < 3; ++axis) {
       const Turned t = turn(v, QuarterTurn{axis});
       ASSERT_EQ(t.from.size(), v.sides.size());
@@ -87,7 +87,7 @@ class TurnedGl : public GlTest {
         for (int band = 0; band < 3; ++band)
           worst = std::max(worst, std::abs(received[i][band] - expected[t.from[i]][band]));
       }
-      EXPECT_LT(worst, 1e-5f * most) << "about axis " << axis;
+      EXPECT_LT(worst, 1e-5f * largest) << "about axis " << axis;
     }
   }
   /// Not a cube, and furnished beyond its middle.

@@ -160,7 +160,7 @@ struct BoxSides {
     grid.cells = glm::ivec3(cells);
     grid.cell_size_m = 2.0f / float(cells);
     grid.origin = glm::vec3(-1.0f);
-    const int cells_a_patch = cells / radiosity.patches_on_edge();
+    const int cells_per_patch = cells / radiosity.patches_on_edge();
     for (int i = 0; i < cells * cells * cells; ++i) {
       const glm::ivec3 c = shared::cell_coord(grid, i);
       for (int face = 0; face < 6; ++face) {
@@ -178,7 +178,7 @@ struct BoxSides {
         side.front = 1;
         sides.push_back(side);
         patch_of.push_back(
-            radiosity.index(face, c[shared::axis_b(axis)] / cells_a_patch, c[shared::axis_c(axis)] / cells_a_patch));
+            radiosity.index(face, c[shared::axis_b(axis)] / cells_per_patch, c[shared::axis_c(axis)] / cells_per_patch));
       }
     }
   }

@@ -33,11 +33,11 @@ TEST(Grid, FaceIndexAndCoordinatesAreInverse) {
   const Grid grid = odd_grid();
   for (int axis = 0; axis < 3; ++axis) {
     std::set<int> seen;
-    glm::ivec3 most = grid.cells;
-    most[axis] += 1;
-    for (int z = 0; z < most.z; ++z) {
-      for (int y = 0; y < most.y; ++y) {
-        for (int x = 0; x < most.x; ++x) {
+    glm::ivec3 counts = grid.cells;
+    counts[axis] += 1;
+    for (int z = 0; z < counts.z; ++z) {
+      for (int y = 0; y < counts.y; ++y) {
+        for (int x = 0; x < counts.x; ++x) {
           const int index = shared::face_index(grid, axis, {x, y, z});
           EXPECT_EQ(shared::face_coord(grid, axis, index), glm::ivec3(x, y, z));
           seen.insert(index);

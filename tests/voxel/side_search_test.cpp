@@ -39,7 +39,7 @@ TEST(SidesOfPoint, FindsWhatAWallShows) {
 SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int front) {
   const int order[9] = {4, 0, 1, 2, 3, 5, 6, 7, 8};
   SidesOfPoint out;
-  for (float least_cosine : {0.70710678f, 0.0f}) {
+  for (float min_cosine : {0.70710678f, 0.0f}) {
     for (int a = 0; a < 3; ++a) {
       const int b = shared::axis_b(a), c = shared::axis_c(a);
       if (std::abs(n[a]) < 1e-3f) continue;
@@ -58,7 +58,7 @@ SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int 
         const float cosine = glm::dot(side->normal, n), bounded = glm::clamp(cosine, 0.1f, 1.0f);
         const float behind = (side->depth - depth) * side->normal[a];
         if (front >= 0 && behind > 0.02f + 0.75f * std::sqrt(1.0f - bounded * bounded) / bounded) continue;
-        if (cosine >= least_cosine) out.sides[a] = int(side - v.sides().data());
+        if (cosine >= min_cosine) out.sides[a] = int(side - v.sides().data());
       }
       out.weights[a] = out.sides[a] >= 0 ? std::abs(n[a]) : 0.0f;
     }

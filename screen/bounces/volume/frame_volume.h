@@ -27,7 +27,7 @@ class FrameVolume {
  public:
   virtual ~FrameVolume() = default;
   /// Virtual lights are there, what is seen of them is not yet: a copy to the host may begin.
-  virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightParts* /*parts*/,
+  virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightSubdivision* /*parts*/,
                             gl::PassTimer& /*timer*/) {}
   /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce starts from, else null.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
@@ -42,7 +42,7 @@ class FrameVolume {
 };
 
 /// Memory that a volume is going to take [bytes] for pictures of a size, VolumeReport::memory_bytes, before anything is
-/// allocated: what options.memory_limit is held against. The sum of what its parts say of themselves.
+/// allocated: what options.memory_limit is compared with. The sum of what its parts say of themselves.
 size_t volume_bytes_expected(const Scene& scene, const VolumeOptions& options, bool on_gpu, glm::ivec2 size);
 
 /// The same of either backend.

@@ -3,7 +3,7 @@
 #include "core/gl/program.h"
 #include "propagation/side_flux_gl.h"
 #include "screen/base/virtual_light_list_gl.h"
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -12,7 +12,7 @@ namespace volgi::screen {
 struct FirstBounce {
   const VirtualLightListGl& lights;
   const LightClusters& clusters;
-  const VirtualLightParts* parts;  // what lights those near it instead; null: nobody
+  const VirtualLightSubdivision* parts;  // what lights those near it instead; null: nobody
   float near_zone;                 // areas of a light; 0 without parts
 };
 

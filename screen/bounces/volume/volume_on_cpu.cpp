@@ -33,24 +33,24 @@ void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const Light& light) {
 /// waited for when all that the GPU does for pixels is under way.
 class LightsOnHost {
  public:
-  void begin(const VirtualLightListGl& lights, const VirtualLightParts* parts) {
+  void begin(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts) {
     copy(lights.buffer, size_t(lights.count()) * sizeof(shared::VirtualLight), lights_copy_);
     if (parts != nullptr)
-      copy(parts->pieces(), size_t(lights.count()) * LIGHT_PIECES * sizeof(shared::LightPiece), pieces_copy_);
+      copy(parts->pieces(), size_t(lights.count()) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight), pieces_copy_);
   }
   /// begin() comes first. @param near_zone  of the parts.
-  const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightParts* parts, float near_zone) {
+  const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts, float near_zone) {
     const auto count = size_t(lights.count());
     fetch(lights_copy_, count, host_.lights);
     host_.reflected = lights.reflected;
     host_.pieces.clear();
     host_.near_zone = near_zone;
-    if (parts != nullptr) fetch(pieces_copy_, count * LIGHT_PIECES, host_.pieces);
+    if (parts != nullptr) fetch(pieces_copy_, count * SUBLIGHTS_PER_LIGHT, host_.pieces);
     return host_;
   }
   size_t bytes() const {
     return host_.lights.capacity() * sizeof(shared::VirtualLight) +
-           host_.pieces.capacity() * sizeof(shared::LightPiece);
+           host_.pieces.capacity() * sizeof(shared::SubLight);
   }
 
  private:
@@ -105,7 +105,7 @@ class SidesOnCpu : public FrameVolume {
     look_at_geometry();
   }
 
-  void lights_ready(const VirtualLightListGl& lights, const VirtualLightParts* parts, gl::PassTimer& timer) override {
+  void lights_ready(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts, gl::PassTimer& timer) override {
     const auto scope = timer.scope("screen/bounces/volume/copy_lights");
     lights_.begin(lights, parts);
   }

@@ -7,7 +7,7 @@
 #include "screen/bounces/volume/frame_volume.h"
 #include "screen/frame/plan.h"
 #include "screen/lights/resample/resample_stage.h"
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 
 namespace volgi::screen {
 
@@ -44,7 +44,7 @@ constexpr Parameter PARAMETERS[] = {
         [](VolumeOptions& o) -> auto& { return o.warm_start; }),
     number<VolumeOptions>(
         {"solver.passes", "passes", "amortised: at most so many over the volume a frame", "until done"}, {1, 10000},
-        [](VolumeOptions& o) -> auto& { return o.passes_a_run; }),
+        [](VolumeOptions& o) -> auto& { return o.passes_per_run; }),
     yes_no<VolumeOptions>(
         {"conservative.coarse", "",
          "conservative: carries the end of each order on a grid of half as many cells, on the CPU only",
@@ -93,7 +93,7 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
   bounce_rules(o, 0.5f);
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
               .adds = {{{punctual_higher, emission_first, emission_higher}}}};
-  if (lights_have_parts(options)) r.needs.push_back(product<VirtualLightParts>());
+  if (lights_are_subdivided(options)) r.needs.push_back(product<VirtualLightSubdivision>());
   return r;
 }
 
@@ -127,19 +127,19 @@ class VolumeStage : public Stage {
         on_gpu_(runs_on_gpu(context.options.backend)),
         after_first_bounce_(source == VolumeOptions::Source::first_bounce) {
     options_.source = source;
-    if (lights_have_parts(context.options)) near_zone_ = context.options.of<ResampleOptions>().near_zone;
+    if (lights_are_subdivided(context.options)) near_zone_ = context.options.of<ResampleOptions>().near_zone;
     make();
     warn_of_mixed_light(context);
   }
 
   void lights_ready(FrameData& frame, gl::PassTimer& timer) override {
     if (after_first_bounce_)
-      volume_->lights_ready(frame.get<VirtualLightListGl>(), frame.find<VirtualLightParts>(), timer);
+      volume_->lights_ready(frame.get<VirtualLightListGl>(), frame.find<VirtualLightSubdivision>(), timer);
   }
   void run(FrameData& frame, gl::PassTimer& timer) override {
     if (after_first_bounce_) {
       const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>(),
-                              frame.find<VirtualLightParts>(), near_zone_};
+                              frame.find<VirtualLightSubdivision>(), near_zone_};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
       // What reaches surfaces from emission has been reflected before.
       frame.layers.push_back({&volume_->direct(), {emission_first}});

@@ -11,9 +11,9 @@ namespace volgi::screen {
 namespace {
 
 constexpr size_t kLightBytes = sizeof(shared::VirtualLight);
-constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_A_BLOCK * kLightBytes;
+constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_PER_BLOCK * kLightBytes;
 constexpr int kAlign = 16;           // lights: 768 bytes, a multiple of every offset alignment that GL allows
-constexpr size_t kDoubtBins = 2048;  // exact_pixels.glsl
+constexpr size_t kErrorBins = 2048;  // exact_pixels.glsl
 constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
@@ -53,8 +53,8 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   direct_irradiance_ = picture(size);
   indirect_irradiance_ = picture(size);
   half_blurred_ = picture(size);
-  doubt_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
-  bins_ = gl::Buffer((1 + kDoubtBins) * sizeof(GLuint));
+  error_estimate_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
+  bins_ = gl::Buffer((1 + kErrorBins) * sizeof(GLuint));
   list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
   gather_listed_ =
       gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define(), "LISTED"});
@@ -93,7 +93,7 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
   }
   if (options_.exact_rows > 0.0f) {
     const auto scope = timer.scope(exact_name);
-    list_doubtful();
+    list_worst_pixels();
     set_up(gather_listed_);
     gather_listed();
   }
@@ -101,7 +101,7 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
 
 void AreaLightGather::arrange(const VirtualLightListGl& lights, const VirtualAreaLights& area_lights) {
   light_count_ = lights.count();
-  gl::reserve(arranged_, size_t(light_count_ + VIRTUAL_LIGHTS_A_BLOCK) * kLightBytes);  // blocks are bound whole
+  gl::reserve(arranged_, size_t(light_count_ + VIRTUAL_LIGHTS_PER_BLOCK) * kLightBytes);  // blocks are bound whole
   lights.buffer.bind_storage(0);
   area_lights.order().bind_storage(1);
   area_lights.cluster_of().bind_storage(2);
@@ -119,7 +119,7 @@ void AreaLightGather::gather(const gl::Program& program, Range lights, const Dis
   int first = lights.first;
   do {
     const int block = first / kAlign * kAlign;
-    const int end = std::min(block + VIRTUAL_LIGHTS_A_BLOCK, lights.end);
+    const int end = std::min(block + VIRTUAL_LIGHTS_PER_BLOCK, lights.end);
     glBindBufferRange(GL_UNIFORM_BUFFER, 0, arranged_.id(), GLintptr(block) * GLintptr(kLightBytes), kBlockBytes);
     program.set("first_of_block", block);
     program.set("first_light", first);
@@ -159,10 +159,10 @@ void AreaLightGather::gather_listed() {
 }
 
 void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m) {
-  doubt_.bind_image(1, GL_READ_WRITE);
+  error_estimate_.bind_image(1, GL_READ_WRITE);
   blur_.set("interleave", options_.interleave);
-  blur_.set("most_distance_m", options_.blur_distance * scene_diagonal_m);
-  blur_.set("least_cosine", options_.blur_cosine);
+  blur_.set("max_distance_m", options_.blur_distance * scene_diagonal_m);
+  blur_.set("min_cosine", options_.blur_cosine);
   blur_.set("off_plane", options_.blur_off_plane);
   blur_.set("adds", adds ? 1 : 0);
   blur_.use();
@@ -178,17 +178,17 @@ void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool 
   along({0, 1}, half_blurred_, to, true);
 }
 
-void AreaLightGather::list_doubtful() {
+void AreaLightGather::list_worst_pixels() {
   constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
   list_.upload(nothing.data(), sizeof nothing);
   bins_.clear();
-  doubt_.bind_image(0, GL_READ_ONLY);
+  error_estimate_.bind_image(0, GL_READ_ONLY);
   list_.bind_storage(0);
   bins_.bind_storage(1);
   count_.use();
   gl::dispatch({size_.x, size_.y, 1}, {64, 64, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  threshold_.set("most", GLuint(std::min(options_.exact_rows, float(size_.y)) * float(size_.x)));
+  threshold_.set("max_pixels", GLuint(std::min(options_.exact_rows, float(size_.y)) * float(size_.x)));
   threshold_.use();
   gl::dispatch({1, 1, 1}, {1, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -14,8 +14,7 @@ struct AreaLightGatherOptions {
   /// n: pixels of a block of n x n share the lights, 1 / n^2 to each, and a blur over such blocks joins them. 1, 2, 4
   /// or 8; 1 gathers every light at every pixel, without blur.
   int interleave = 4;
-  /// As many pixels as so many rows of the picture hold, those that the blur serves worst, are gathered again with
-  /// every light. They lie along edges and shadows, which are lines: their number grows as rows do. 10 and
+  /// The pixels with the largest error estimates, as many as this number of rows of the picture holds, are gathered again with every light. They lie along edges and shadows, which are lines: their number grows as rows do. 10 and
   /// blocks of 4 x 4 leave 3 % at 192 rows, for 12 to 14 % of the time of every light at every pixel.
   float exact_rows = 10.0f;
   /// The blur joins pixels no farther apart than this part of the scene's diagonal (alpha of the paper), ...
@@ -30,7 +29,7 @@ struct AreaLightGatherOptions {
 /// after Segovia et al. 2006, a blur that does not cross edges of geometry). We depart: in the subsets: neighbours in
 /// the order of clusters, so that a pixel looks at few shadows, and subsets that follow on one another lie far apart in
 /// the block; in the blur: it interpolates every subset between the nearest pixels that have it, instead of a mean; and
-/// the pixels in most doubt, by what the blur has seen vary, are gathered again with every light. Cost a pixel: lights
+/// the pixels with the largest error estimates, by what the blur has seen vary, are gathered again with every light. Cost a pixel: lights
 /// / n^2, and exact_rows / rows of all of them; 6 n - 3 texels of the blur.
 class AreaLightGather {
  public:
@@ -61,15 +60,15 @@ class AreaLightGather {
   template <class Dispatch>
   void gather(const gl::Program& program, Range lights, const Dispatch& dispatch);
   void blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m);
-  void list_doubtful();
+  void list_worst_pixels();
 
   AreaLightGatherOptions options_;
   glm::ivec2 size_;
   gl::Texture direct_, indirect_;
   gl::Texture direct_irradiance_, indirect_irradiance_, half_blurred_;
-  gl::Texture doubt_;    // R32F: radiance that a pixel may err by
+  gl::Texture error_estimate_;    // R32F: radiance that a pixel may err by
   gl::Buffer arranged_;  // shared::VirtualLight in the order of clusters; source is the area light
-  gl::Buffer bins_;      // uint: threshold, then pixels in each bin of doubt (exact_pixels.glsl)
+  gl::Buffer bins_;      // uint: threshold, then pixels in each bin of the error estimate (exact_pixels.glsl)
   gl::Buffer list_;      // pixels: coarse_pixels.glsl
   int light_count_ = 0;
   bool with_direct_ = false;

@@ -27,8 +27,8 @@ constexpr LightPaths PATHS{LightPath::emission_direct, LightPath::punctual_first
 StageRole role(const FrameOptions& options) {
   AreaLightGather::check(options.of<Options>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
-  if (lights_have_parts(options)) {
-    r.needs.push_back(product<VirtualLightParts>());
+  if (lights_are_subdivided(options)) {
+    r.needs.push_back(product<VirtualLightSubdivision>());
     r.adds = {{PATHS, LightShare::near}, {PATHS, LightShare::far}};
   } else {
     r.adds = {{PATHS}};
@@ -46,7 +46,7 @@ class InterleavedStage : public Stage {
     const auto& lights = frame.get<VirtualLightListGl>();
     const auto& clusters = frame.get<LightClusters>();
     if (!gather_) gather_.emplace(size_, options_, clusters.shadow);
-    if (near_) near_->run(frame.gbuffer, lights, frame.get<VirtualLightParts>(), timer);
+    if (near_) near_->run(frame.gbuffer, lights, frame.get<VirtualLightSubdivision>(), timer);
     gather_->run(frame.gbuffer, lights, clusters.area_lights, clusters.maps, clusters.shadow, frame.scene_diagonal_m,
                  timer);
     add_layers(*gather_, near_ ? LightShare::far : LightShare::whole, lights, frame);
@@ -59,7 +59,7 @@ class InterleavedStage : public Stage {
  private:
   static Options options_for(const StageContext& context) {
     Options o = context.options.of<Options>();
-    o.near_zone = lights_have_parts(context.options) ? context.options.of<ResampleOptions>().near_zone : 0.0f;
+    o.near_zone = lights_are_subdivided(context.options) ? context.options.of<ResampleOptions>().near_zone : 0.0f;
     return o;
   }
   template <class Pass>

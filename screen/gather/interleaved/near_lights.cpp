@@ -25,7 +25,7 @@ NearLights::NearLights(glm::ivec2 size, float zone)
   direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
 }
 
-void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightParts& parts,
+void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
                             gl::PassTimer& timer) {
   const auto scope = timer.scope(tiles_name);
   const auto words = size_t(lights.count() + 31) / 32;
@@ -37,7 +37,7 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
   gl::reserve(masks_, small_count * words * sizeof(GLuint));
   gl::reserve(large_masks_, large_count * words * sizeof(GLuint));
   list_.upload(nothing.data(), sizeof nothing);
-  parts.near_lights().bind_storage(0);
+  subdivision.near_lights().bind_storage(0);
   list_.bind_storage(1);
   masks_.bind_storage(2);
   large_masks_.bind_storage(4);
@@ -57,9 +57,9 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
   run(tiles_program_, small_count);
 }
 
-void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightParts& parts,
+void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
                      gl::PassTimer& timer) {
-  find_tiles(gbuffer, lights, parts, timer);
+  find_tiles(gbuffer, lights, subdivision, timer);
   const auto scope = timer.scope(name);
   indirect_.clear({0.0f, 0.0f, 0.0f, 0.0f});
   if (lights.emitted > 0) direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
@@ -68,10 +68,10 @@ void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, c
   gather_.set("zone", zone_);
   gather_.set("first_emitted", lights.reflected);
   gather_.set("with_direct", lights.emitted > 0 ? 1 : 0);
-  parts.near_lights().bind_storage(0);
+  subdivision.near_lights().bind_storage(0);
   list_.bind_storage(1);
   masks_.bind_storage(2);
-  parts.pieces().bind_storage(3);
+  subdivision.sublights().bind_storage(3);
   gbuffer.bind();
   indirect_.bind_image(0, GL_WRITE_ONLY);
   direct_.bind_image(1, GL_WRITE_ONLY);

@@ -3,26 +3,25 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 
 namespace volgi::screen {
 
 /// Passes "screen/gather/interleaved/near_lights_tiles" and "screen/gather/interleaved/near_lights": the light that
-/// virtual lights send to what is near them, from their pieces (VirtualLightParts). A disk's form factor is right only
+/// virtual lights send to what is near them, from their sub-lights (VirtualLightSubdivision). A disk's form factor is right only
 /// from afar: surfaces that meet a lit one got dark corners with bright spots, nearly all of the error that 1024 lights
-/// left. The share of a light that its quarters carry falls from 1 to 0 between `zone` and twice that, in squared
-/// distance over area (far_share() of shaders/shared/near_light.shared.h), and nearer by half the
-/// quarters' parts follow by the same rule; the gather takes the rest, which is smooth. Nothing is taken to hide a
+/// left. The share of a light that its coarse sub-lights carry falls from 1 to 0 between `zone` and twice that, in squared
+/// distance over area (far_share() of shaders/shared/near_light.shared.h), and nearer by half their fine ones follow by the same rule; the gather takes the rest, which is smooth. Nothing is taken to hide a
 /// light from what is so near: an area light's map, drawn from elsewhere, knows nothing of such ways. Tiles of 8 x 8
 /// pixels find their lights first, among those of 32 x 32; those without any are left out. Cost: lights for each 1024
-/// pixels; about eight pieces for each light near a pixel and in front of it.
+/// pixels; about eight sub-lights for each light near a pixel and in front of it.
 class NearLights {
  public:
   static constexpr const char* tiles_name = "screen/gather/interleaved/near_lights_tiles";
   static constexpr const char* name = "screen/gather/interleaved/near_lights";
   NearLights(glm::ivec2 size, float zone);
 
-  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightParts& parts,
+  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
            gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
@@ -30,7 +29,7 @@ class NearLights {
   size_t bytes() const;
 
  private:
-  void find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightParts& parts,
+  void find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
                   gl::PassTimer& timer);
 
   glm::ivec2 size_;

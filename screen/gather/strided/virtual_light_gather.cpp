@@ -7,7 +7,7 @@ namespace volgi::screen {
 
 namespace {
 
-constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_A_BLOCK * sizeof(shared::VirtualLight);
+constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_PER_BLOCK * sizeof(shared::VirtualLight);
 constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
@@ -73,13 +73,13 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
   if (listed) list_.bind_storage(0);
   if (negative != nullptr) negative->buffer().bind_uniform(1);
   // At least one dispatch, which leaves black where there are no lights.
-  const int first_block = first / VIRTUAL_LIGHTS_A_BLOCK;
-  const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_A_BLOCK, first_block);
+  const int first_block = first / VIRTUAL_LIGHTS_PER_BLOCK;
+  const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_PER_BLOCK, first_block);
   for (int block = first_block; block <= last_block; ++block) {
-    const int start = block * VIRTUAL_LIGHTS_A_BLOCK;
+    const int start = block * VIRTUAL_LIGHTS_PER_BLOCK;
     glBindBufferRange(GL_UNIFORM_BUFFER, 0, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
     program.set("first_light", std::max(first - start, 0));
-    program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_A_BLOCK));
+    program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_PER_BLOCK));
     program.set("begins", block == first_block ? 1 : 0);
     program.set("ends", block == last_block ? 1 : 0);
     if (negative != nullptr) program.set("negative_count", negative->count());

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "screen/lights/resample/choose_virtual_lights.h"
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/resample_virtual_lights.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/lights/rsm/virtual_lights.h"
 
 namespace volgi::screen {
@@ -29,14 +29,14 @@ StageRole role(const FrameOptions& options) {
   StageRole r{.active = options.of<Options>().candidates > 1,
               .needs = {product<VirtualLights>()},
               .makes = {product<VirtualLightListGl>()}};
-  if (lights_have_parts(options)) r.makes.push_back(product<VirtualLightParts>());
+  if (lights_are_subdivided(options)) r.makes.push_back(product<VirtualLightSubdivision>());
   return r;
 }
 
 class ResampledLights : public Stage {
  public:
   explicit ResampledLights(const StageContext& context) : choose_(context.options.of<Options>().candidates) {
-    if (context.takes<VirtualLightParts>()) parts_.emplace();
+    if (context.takes<VirtualLightSubdivision>()) parts_.emplace();
   }
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
@@ -55,20 +55,20 @@ class ResampledLights : public Stage {
   void list_lights(VirtualLightList& list) const override { list.lights = download(choose_.lights()); }
 
  private:
-  ChooseVirtualLights choose_;
-  std::optional<VirtualLightParts> parts_;
+  ResampleVirtualLights choose_;
+  std::optional<VirtualLightSubdivision> parts_;
 };
 
 }  // namespace
 
-bool lights_have_parts(const FrameOptions& options) {
+bool lights_are_subdivided(const FrameOptions& options) {
   const auto& o = options.of<Options>();
   return o.near_zone > 0.0f && o.candidates > 1;
 }
 
 CandidatesAsked candidates_asked(const StageContext& of_candidates) {
   if (!of_candidates.takes<VirtualLights>()) return {};
-  return {of_candidates.options.of<Options>().candidates, of_candidates.takes<VirtualLightParts>()};
+  return {of_candidates.options.of<Options>().candidates, of_candidates.takes<VirtualLightSubdivision>()};
 }
 
 constinit const StageType RESAMPLED_LIGHTS{.name = "lights/resample",

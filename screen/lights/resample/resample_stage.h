@@ -4,17 +4,17 @@
 namespace volgi::screen {
 
 struct ResampleOptions {
-  int candidates = 16;     // for each virtual light (ChooseVirtualLights); 1: take them as they come
-  float near_zone = 4.0f;  // areas of a virtual light near which its parts light (NearLights); 0: none
+  int candidates = 16;     // for each virtual light (ResampleVirtualLights); 1: take them as they come
+  float near_zone = 4.0f;  // areas of a virtual light within which its sub-lights light (NearLights); 0: none
 };
 
-/// Virtual lights chosen from candidates by what they send to the picture (choose_virtual_lights.h), and, where a later
-/// stage takes them, the parts that each consists of (virtual_light_parts.h). Makes VirtualLightListGl anew, and
-/// VirtualLightParts.
+/// Virtual lights chosen from candidates by what they send to the picture (resample_virtual_lights.h), and, where a later
+/// stage takes them, the parts that each consists of (virtual_light_subdivision.h). Makes VirtualLightListGl anew, and
+/// VirtualLightSubdivision.
 extern const StageType RESAMPLED_LIGHTS;
 
 /// Whether lights can be had in parts with these options: they are pieces of a curve through candidates.
-bool lights_have_parts(const FrameOptions& options);
+bool lights_are_subdivided(const FrameOptions& options);
 
 /// What resampling asks of the stage that makes its candidates.
 struct CandidatesAsked {

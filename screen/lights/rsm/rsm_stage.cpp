@@ -14,10 +14,10 @@ constexpr const char* SAMPLINGS[] = {"halton", "flux"};
 constexpr Parameter PARAMETERS[] = {
     number<Options>(
         {"vpl.count", "", "virtual point lights of all lights together, shared by flux", nullptr, "--vpls"},
-        {1, Options::kMost}, [](Options& o) -> auto& { return o.count; }),
+        {1, Options::kMaxCount}, [](Options& o) -> auto& { return o.count; }),
     number<Options>(
         {"vpl.per_light", "", "as many for each light instead (emitters count as one)", "by flux", "--vpls-per-light"},
-        {1, Options::kMost}, [](Options& o) -> auto& { return o.per_light; }),
+        {1, Options::kMaxCount}, [](Options& o) -> auto& { return o.per_light; }),
     choice<Options>(
         {"vpl.flux", "", "samples by solid angle (Halton's points), or by reflected flux"}, SAMPLINGS,
         [](Options& o) -> auto& { return o.sampling; }),

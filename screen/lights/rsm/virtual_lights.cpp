@@ -22,9 +22,9 @@ constexpr GLuint kLightsBinding = 0, kSamplesBinding = 3, kPyramidBinding = 4;
 
 const VirtualLightOptions& checked(const VirtualLightOptions& options) {
   const int asked = options.per_light.value_or(options.count);
-  if (asked < 1 || asked > VirtualLightOptions::kMost) {
+  if (asked < 1 || asked > VirtualLightOptions::kMaxCount) {
     throw Error(ExitCode::usage, std::to_string(asked) + " virtual lights: the number must lie between 1 and " +
-                                     std::to_string(VirtualLightOptions::kMost));
+                                     std::to_string(VirtualLightOptions::kMaxCount));
   }
   return options;
 }
@@ -86,12 +86,12 @@ void VirtualLights::scene_moved() {
 LightShares VirtualLights::shares() const {
   LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
                                           : share_by_power(scene_, emitters_.flux(), options_.count);
-  // At most kMost each, so that the sum cannot overflow for any number of lights that fits in memory.
+  // At most kMaxCount each, so that the sum cannot overflow for any number of lights that fits in memory.
   const auto all = std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_emitters));
-  if (all > VirtualLightOptions::kMost) {
+  if (all > VirtualLightOptions::kMaxCount) {
     throw Error(ExitCode::over_limit, std::to_string(*options_.per_light) + " virtual lights for each source make " +
                                           std::to_string(all) + ", more than " +
-                                          std::to_string(VirtualLightOptions::kMost) + "; ask for fewer");
+                                          std::to_string(VirtualLightOptions::kMaxCount) + "; ask for fewer");
   }
   for (int& of_light : shares.of_light) of_light *= options_.candidates;
   shares.of_emitters *= options_.candidates;

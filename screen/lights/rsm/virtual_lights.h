@@ -20,11 +20,11 @@ struct VirtualLightOptions {
   /// halton: equal solid angles of a spot or point light, equal areas across a sun (Cochran and Steele 2007, §3.1).
   /// flux: in proportion to what texels of the reflective shadow map reflect.
   enum class Sampling { halton, flux } sampling = Sampling::halton;
-  int candidates = 1;  // so many times the lights of each source, for ChooseVirtualLights
+  int candidates = 1;  // for each light of a source, for ResampleVirtualLights; 1: the lights themselves
   /// Instead of Halton's points, equal steps along Hilbert's curve, so that what lies between two can be looked at
-  /// again (VirtualLightParts).
+  /// again (VirtualLightSubdivision).
   bool along_curve = false;
-  static constexpr int kMost = 65536;
+  static constexpr int kMaxCount = 65536;
 };
 
 /// Pass "screen/lights/rsm/virtual_lights": the list of virtual point lights, made on the GPU from the reflective
@@ -35,11 +35,11 @@ class VirtualLights {
   static constexpr const char* name = "screen/lights/rsm/virtual_lights";
   static constexpr const char* product_name = "candidates for virtual lights";
   /// @param scene  must outlive this. Its lights may change at any time, its geometry with scene_moved().
-  /// @throws Error(usage) when the options ask for less than one light, or more than kMost.
+  /// @throws Error(usage) when the options ask for less than one light, or more than kMaxCount.
   VirtualLights(const Scene& scene, const VirtualLightOptions& options);
 
   /// @param maps  of the lights of `scene` as they are now.
-  /// @throws Error(over_limit) when per_light times the number of sources exceeds kMost.
+  /// @throws Error(over_limit) when per_light times the number of sources exceeds kMaxCount.
   void run(const ReflectiveShadowMap& maps, gl::PassTimer& timer);
   /// The scene's geometry is another than before: its emissive surfaces are looked at again.
   void scene_moved();

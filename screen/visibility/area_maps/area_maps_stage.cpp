@@ -12,7 +12,7 @@ constexpr Parameter PARAMETERS[] = {
     number<VirtualAreaLightOptions>(
         {"val.count", "", "virtual area lights, clusters of virtual point lights that share a shadow", nullptr,
          "--vals"},
-        {1, VIRTUAL_AREA_LIGHTS_MOST}, [](VirtualAreaLightOptions& o) -> auto& { return o.count; }),
+        {1, MAX_VIRTUAL_AREA_LIGHTS}, [](VirtualAreaLightOptions& o) -> auto& { return o.count; }),
     choice<AreaMapOptions>(
         {"val.shadow", "", "convolution soft shadow maps, percentage-closer, or one comparison with the map"}, SHADOWS,
         [](AreaMapOptions& o) -> auto& { return o.shadow; }),

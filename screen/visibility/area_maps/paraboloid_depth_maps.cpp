@@ -13,7 +13,7 @@ constexpr GLuint kTileCapacity = 1u << 19;
 constexpr size_t kHeadBytes = 2 * sizeof(GLuint);
 constexpr size_t kTileBytes = 2 * sizeof(GLuint);
 constexpr GLuint kTileGroups = 1024;              // share out the tiles; enough to fill a GPU
-constexpr GLsizei kTrianglesADispatch = 1 << 21;  // GL promises 65535 groups, of 64 triangles
+constexpr GLsizei kTrianglesPerDispatch = 1 << 21;  // GL promises 65535 groups, of 64 triangles
 
 }  // namespace
 
@@ -22,7 +22,7 @@ ParaboloidDepthMaps::ParaboloidDepthMaps(int resolution, int layers)
       layers_(layers),
       distance_(gl::Texture::make_2d_array(GL_R32F, resolution, resolution, layers)),
       tiles_(kHeadBytes + kTileCapacity * kTileBytes) {
-  assert(resolution >= 1 && resolution <= 4096 && layers <= VIRTUAL_AREA_LIGHTS_MOST);
+  assert(resolution >= 1 && resolution <= 4096 && layers <= MAX_VIRTUAL_AREA_LIGHTS);
   const auto programs = [](const std::vector<std::string>& defines) {
     return Programs{gl::Program::compute("screen/visibility/area_maps/paraboloid_depth_maps.comp.glsl", defines),
                     gl::Program::compute("screen/visibility/area_maps/paraboloid_depth_maps_tiles.comp.glsl", defines)};
@@ -57,8 +57,8 @@ void ParaboloidDepthMaps::run(const gl::SceneBuffers& scene, const gl::Buffer& a
 
 void ParaboloidDepthMaps::draw(const Programs& programs, const gl::SceneBuffers::Triangles& triangles,
                                int layers) const {
-  for (GLsizei done = 0; done < triangles.count; done += kTrianglesADispatch) {
-    const GLsizei count = std::min(triangles.count - done, kTrianglesADispatch);
+  for (GLsizei done = 0; done < triangles.count; done += kTrianglesPerDispatch) {
+    const GLsizei count = std::min(triangles.count - done, kTrianglesPerDispatch);
     constexpr std::array<GLuint, 2> head{0, kTileCapacity};
     tiles_.upload(head.data(), sizeof head);
     programs.triangles.set("first_triangle", triangles.first + done);

@@ -18,9 +18,9 @@ constexpr int kListStep = 64;        // whole work groups of virtual_area_lights
 constexpr size_t kCenterBytes = 2 * sizeof(glm::vec4);
 
 const VirtualAreaLightOptions& checked(const VirtualAreaLightOptions& options) {
-  if (options.count < 1 || options.count > VIRTUAL_AREA_LIGHTS_MOST) {
+  if (options.count < 1 || options.count > MAX_VIRTUAL_AREA_LIGHTS) {
     throw Error(ExitCode::usage, std::to_string(options.count) + " area lights: the number must lie between 1 and " +
-                                     std::to_string(VIRTUAL_AREA_LIGHTS_MOST));
+                                     std::to_string(MAX_VIRTUAL_AREA_LIGHTS));
   }
   for (const float weight : {options.position_weight, options.normal_weight}) {
     if (std::isfinite(weight) && weight >= 0.0f) continue;
@@ -35,9 +35,9 @@ void wait_for_writes() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIF
 
 VirtualAreaLights::VirtualAreaLights(const VirtualAreaLightOptions& options)
     : options_(checked(options)),
-      area_lights_(VIRTUAL_AREA_LIGHTS_MOST * sizeof(shared::VirtualAreaLight)),
-      centers_(VIRTUAL_AREA_LIGHTS_MOST * kCenterBytes),
-      progress_((1 + kMostIterations) * sizeof(GLuint)),
+      area_lights_(MAX_VIRTUAL_AREA_LIGHTS * sizeof(shared::VirtualAreaLight)),
+      centers_(MAX_VIRTUAL_AREA_LIGHTS * kCenterBytes),
+      progress_((1 + kMaxIterations) * sizeof(GLuint)),
       seed_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_seed.comp.glsl")),
       assign_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_assign.comp.glsl")),
       update_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_update.comp.glsl")),
@@ -45,7 +45,7 @@ VirtualAreaLights::VirtualAreaLights(const VirtualAreaLightOptions& options)
       shape_(gl::Program::compute("screen/visibility/area_maps/virtual_area_lights_shape.comp.glsl")) {
   area_lights_.clear();
   seed_.set("cluster_count", options_.count);
-  seed_.set("most_iterations", kMostIterations);
+  seed_.set("max_iterations", kMaxIterations);
   assign_.set("weight_per_rad", options_.normal_weight / glm::pi<float>());
   list_.set("cluster_count", options_.count);
 }
@@ -75,7 +75,7 @@ void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_dia
   seed_.use();
   gl::dispatch({1, 1, 1}, {1, 1, 1});
   wait_for_writes();
-  for (int iteration = 0; iteration < kMostIterations && count > 0; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations && count > 0; ++iteration) {
     if (iteration > 0) {
       update_.use();
       update_.set("iteration", iteration - 1);
@@ -105,7 +105,7 @@ int VirtualAreaLights::alive() const {
 }
 
 int VirtualAreaLights::iterations() const {
-  const auto moved = progress_.download<GLuint>(kMostIterations, sizeof(GLuint));
+  const auto moved = progress_.download<GLuint>(kMaxIterations, sizeof(GLuint));
   return int(std::count(moved.begin(), moved.end(), 1u));
 }
 

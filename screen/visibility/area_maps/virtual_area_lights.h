@@ -10,7 +10,7 @@
 namespace volgi::screen {
 
 struct VirtualAreaLightOptions {
-  int count = 64;                // M, up to VIRTUAL_AREA_LIGHTS_MOST
+  int count = 64;                // M, up to MAX_VIRTUAL_AREA_LIGHTS
   float position_weight = 0.7f;  // w_x, of the distance over the scene's diagonal
   float normal_weight = 0.3f;    // w_alpha, of the angle over pi
 };
@@ -29,9 +29,9 @@ class VirtualAreaLights {
   /// end takes 8 (256 lights into 30) to 62 (4096 into 256) on average, 87 at most. After 8, 1024 lights in 30 clusters
   /// have a sum of distances 2 % above the end's (after 4: 5 %, 16: 0.6 %; 4096 in 256 at worst 11 %), and as a spot
   /// turns the centers move 1.8 times as far as lights do (2.5 at the end): more would carry small changes far.
-  static constexpr int kMostIterations = 8;
+  static constexpr int kMaxIterations = 8;
 
-  /// @throws Error(usage) when the count does not lie between 1 and VIRTUAL_AREA_LIGHTS_MOST, or a weight is negative
+  /// @throws Error(usage) when the count does not lie between 1 and MAX_VIRTUAL_AREA_LIGHTS, or a weight is negative
   /// or not finite.
   explicit VirtualAreaLights(const VirtualAreaLightOptions& options);
 
@@ -40,7 +40,7 @@ class VirtualAreaLights {
   void run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer);
 
   int count() const { return options_.count; }
-  const gl::Buffer& buffer() const { return area_lights_; }     // shared::VirtualAreaLight x VIRTUAL_AREA_LIGHTS_MOST
+  const gl::Buffer& buffer() const { return area_lights_; }     // shared::VirtualAreaLight x MAX_VIRTUAL_AREA_LIGHTS
   const gl::Buffer& cluster_of() const { return cluster_of_; }  // C(i): uint for each virtual light
   const gl::Buffer& order() const { return order_; }  // uint: virtual lights by cluster; those without flux last
   /// All three wait for the GPU; after a frame, not in one.

@@ -28,8 +28,8 @@ void set_view(const gl::Program& program, const Camera& camera, glm::ivec2 size)
 }  // namespace
 
 NegativeLights::NegativeLights(const NegativeLightOptions& options)
-    : options_(options), lights_(NEGATIVE_LIGHTS_MOST * sizeof(shared::NegativeLight)) {
-  assert(options.count >= 1 && options.count <= NEGATIVE_LIGHTS_MOST);
+    : options_(options), lights_(MAX_NEGATIVE_LIGHTS * sizeof(shared::NegativeLight)) {
+  assert(options.count >= 1 && options.count <= MAX_NEGATIVE_LIGHTS);
   std::vector<std::string> defines;
   if (options_.method != Method::cochran2007) defines.emplace_back("PASSED_FLUX");
   if (options_.method == Method::sides) defines.emplace_back("SIDES");

@@ -16,8 +16,8 @@
 namespace volgi::screen {
 
 struct NegativeLightOptions {
-  int count = 256;  // up to NEGATIVE_LIGHTS_MOST
-  /// Where they stand, and their lobes. cochran2007: on pixels of a Halton sequence over the screen, a cosine lobe
+  int count = 256;  // up to MAX_NEGATIVE_LIGHTS
+  /// Where negative lights are placed, and their lobes. cochran2007: on pixels of a Halton sequence over the screen, a cosine lobe
   /// around the mean direction of the light that passes. screen, sides: on pixels, or on sides of the volume, chosen by
   /// the flux that passes through them, with a lobe as narrow as that light is.
   enum class Method { cochran2007, screen, sides } method = Method::sides;
@@ -39,7 +39,7 @@ class NegativeLights {
   void run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights, const VoxelGridGl* voxels,
            gl::PassTimer& timer);
 
-  const gl::Buffer& buffer() const { return lights_; }  // shared::NegativeLight x NEGATIVE_LIGHTS_MOST
+  const gl::Buffer& buffer() const { return lights_; }  // shared::NegativeLight x MAX_NEGATIVE_LIGHTS
   int count() const { return options_.count; }
   /// Waits for the GPU; after a frame, not in one.
   std::vector<shared::NegativeLight> download() const;

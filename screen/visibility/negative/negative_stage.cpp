@@ -13,7 +13,7 @@ constexpr const char* METHODS[] = {"cochran2007", "screen", "sides"};
 
 constexpr Parameter PARAMETERS[] = {
     number<Options>(
-        {"negative.count", "", "number of negative lights"}, {1, NEGATIVE_LIGHTS_MOST},
+        {"negative.count", "", "number of negative lights"}, {1, MAX_NEGATIVE_LIGHTS},
         [](Options& o) -> auto& { return o.count; }),
     choice<Options>(
         {"negative.method", "",

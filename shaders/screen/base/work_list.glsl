@@ -9,13 +9,13 @@ struct WorkListHead {
   uint count;
 };
 
-// Makes room for one more, at `slot`, and for a group of threads to every `a_group` of them. A macro, because heads in
+// Appends one entry, at `slot`, and a group of threads for every `per_group` entries. A macro, because heads in
 // buffers cannot be handed to functions.
-#define TAKE_SLOT(head, a_group, slot)                                                \
-  slot = atomicAdd(head.count, 1u);                                                   \
-  if (slot % a_group == 0u) {                                                         \
-    if (slot / a_group < uint(GROUPS_A_ROW)) atomicAdd(head.groups_x, 1u);            \
-    else if (slot / a_group % uint(GROUPS_A_ROW) == 0u) atomicAdd(head.groups_y, 1u); \
+#define APPEND_TO_LIST(head, per_group, slot)                                             \
+  slot = atomicAdd(head.count, 1u);                                                       \
+  if (slot % per_group == 0u) {                                                           \
+    if (slot / per_group < uint(GROUPS_PER_ROW)) atomicAdd(head.groups_x, 1u);            \
+    else if (slot / per_group % uint(GROUPS_PER_ROW) == 0u) atomicAdd(head.groups_y, 1u); \
   }
 
 #endif

@@ -39,7 +39,7 @@ void main() {
 
 TEST_F(Dispatch, ReachesEachOfMoreThan65535GroupsOnce) {
   constexpr size_t groups = 70001;  // three rows, the last not full
-  static_assert(groups > 65535 && groups % GROUPS_A_ROW != 0);
+  static_assert(groups > 65535 && groups % GROUPS_PER_ROW != 0);
   EXPECT_EQ(visits("layout(local_size_x = 1) in;", 1, groups), std::vector<GLuint>(groups, 1));
 }
 

@@ -45,7 +45,7 @@ void add_ceiling_emitter(Scene& scene) {
 
 VirtualLightsForSides for_sides(const VirtualLightsCpu& lights) { return {lights.lights, lights.reflected, {}, 0.0f}; }
 
-/// Octahedral, 16 bits a number (shared::LightPiece); for directions along an axis.
+/// Octahedral, 16 bits a number (shared::SubLight); for directions along an axis.
 std::uint32_t packed(glm::vec3 axis) { return glm::packSnorm2x16(glm::vec2(axis)); }
 
 struct Gathered {
@@ -231,7 +231,7 @@ TEST(SideGather, StrideKeepsTheMean) {
 VirtualLightsForSides square_in_pieces(float edge) {
   VirtualLightsForSides from;
   const auto piece = [&](glm::vec2 middle, float part) {
-    return shared::LightPiece{{middle.x, -1.0f, middle.y}, edge * edge * part, glm::vec3(part), packed({0, 1, 0})};
+    return shared::SubLight{{middle.x, -1.0f, middle.y}, edge * edge * part, glm::vec3(part), packed({0, 1, 0})};
   };
   for (int k = 0; k < 20; ++k) {
     const int n = k < 4 ? 2 : 4, cell = k < 4 ? k : (k - 4) % 4 + 4 * ((k - 4) / 4);

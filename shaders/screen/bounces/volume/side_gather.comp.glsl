@@ -12,7 +12,7 @@
 
 layout(local_size_x = 64) in;
 layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[VIRTUAL_AREA_LIGHTS_MOST]; };
+layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MAX_VIRTUAL_AREA_LIGHTS]; };
 layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
 layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };

@@ -28,7 +28,7 @@ struct Gathered {
 };
 
 // Sides of one cell. `point` (cell units) must lie in front of every surface that the cell sees.
-void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool check_plane, float weight, inout Gathered g) {
+void gather_cell(ivec3 cell, vec3 point, vec3 normal, float min_cosine, bool check_plane, float weight, inout Gathered g) {
   if (!cell_inside(grid, cell)) return;
   uvec2 own_sides = cell_sides[cell_index(grid, cell)];
   uint count = count_bits(own_sides.y & 63u);
@@ -38,7 +38,7 @@ void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool c
     vec3 on_surface = vec3(cell) + 0.5;
     on_surface[sides[s].face >> 1] = sides[s].depth;
     if (check_plane && dot(point - on_surface, side_normal) < -1e-3) return;
-    if (dot(side_normal, normal) < least_cosine) continue;
+    if (dot(side_normal, normal) < min_cosine) continue;
     float w = weight * sides[s].area_m2;
     here.direct += w * direct_irradiance[s].rgb;
     here.indirect += w * indirect_irradiance[s].rgb;
@@ -52,7 +52,7 @@ void gather_cell(ivec3 cell, vec3 point, vec3 normal, float least_cosine, bool c
 const uint ANY_CELL = 0xffffffffu;
 
 // `open`: bits of reachable_cells around the cell that the point lies in, and no other cells; or ANY_CELL.
-Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_plane, int reach, uint open) {
+Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_plane, int reach, uint open) {
   Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
   vec3 low = floor(point - 0.5);
   vec3 t = point - 0.5 - low;
@@ -67,7 +67,7 @@ Gathered gather_around(vec3 point, vec3 normal, float least_cosine, bool check_p
         }
         vec3 d = abs(vec3(x, y, z) - t);
         vec3 w = max(vec3(1.0 + float(reach)) - d, vec3(0.0));
-        gather_cell(cell, point, normal, least_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
+        gather_cell(cell, point, normal, min_cosine, check_plane, w.x * w.y * w.z + 1e-6, g);
       }
     }
   }

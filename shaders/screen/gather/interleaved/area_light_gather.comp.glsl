@@ -20,8 +20,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #endif
 layout(binding = 0, rgba32f) uniform image2D indirect;
 layout(binding = 1, rgba32f) uniform image2D direct;
-layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
-layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[VIRTUAL_AREA_LIGHTS_MOST]; };
+layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_PER_BLOCK]; };
+layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MAX_VIRTUAL_AREA_LIGHTS]; };
 uniform int first_of_block;  // its lights[0], in the order of clusters
 uniform int first_light;     // taken from the block, in that order
 uniform int end_light;

@@ -17,6 +17,6 @@ void main() {
   if (place >= light_count) return;
   uint index = order[place];
   VirtualLight l = lights[index];
-  l.source = int(min(cluster_of[index], uint(VIRTUAL_AREA_LIGHTS_MOST)));
+  l.source = int(min(cluster_of[index], uint(MAX_VIRTUAL_AREA_LIGHTS)));
   arranged[place] = l;
 }

@@ -2,7 +2,7 @@
 #ifndef VOLGI_EXACT_PIXELS_GLSL
 #define VOLGI_EXACT_PIXELS_GLSL
 
-#define DOUBT_BINS 2048u  // screen/gather/interleaved/area_light_gather.cpp has the same
-uint doubt_bin(float doubt) { return floatBitsToUint(max(doubt, 0.0)) >> 20; }
+#define ERROR_BINS 2048u  // screen/gather/interleaved/area_light_gather.cpp has the same
+uint error_bin(float error_estimate) { return floatBitsToUint(max(error_estimate, 0.0)) >> 20; }
 
 #endif

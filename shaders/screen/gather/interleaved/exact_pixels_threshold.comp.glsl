@@ -4,12 +4,12 @@
 
 layout(local_size_x = 64) in;
 layout(std430, binding = 1) buffer Bins { uint threshold; uint count[]; };
-uniform uint most;
+uniform uint max_pixels;
 shared uint sums[64];
 
 void main() {
   uint me = gl_LocalInvocationIndex;
-  uint each = DOUBT_BINS / 64u;
+  uint each = ERROR_BINS / 64u;
   uint sum = 0u;
   for (uint i = 0u; i < each; ++i) sum += count[me * each + i];
   sums[me] = sum;
@@ -17,8 +17,8 @@ void main() {
   if (me != 0u) return;
   uint above = 0u;
   uint part = 64u;
-  while (part > 0u && above + sums[part - 1u] <= most) above += sums[--part];
+  while (part > 0u && above + sums[part - 1u] <= max_pixels) above += sums[--part];
   uint bin = part * each;
-  while (bin > 1u && above + count[bin - 1u] <= most) above += count[--bin];
-  threshold = max(bin, 1u);  // without doubt, nothing is done again
+  while (bin > 1u && above + count[bin - 1u] <= max_pixels) above += count[--bin];
+  threshold = max(bin, 1u);  // where no error is estimated, nothing is done again
 }

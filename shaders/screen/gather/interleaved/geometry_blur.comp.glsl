@@ -4,7 +4,7 @@
 // either side that have it (a tent two blocks wide), which keeps what is linear. Pixels of other surfaces do not count;
 // a subset with one pixel left is taken from there, and the mean goes over the subsets that are found. The second axis
 // ends in radiance.
-// Fourth channel and `doubt`: variance of the mean [luminance squared], judged by what varies. See below.
+// Fourth channel and `error_estimate`: variance of the mean [luminance squared], judged by what varies. See below.
 #include "shared/constants.glsl"
 #include "screen/base/gbuffer.glsl"
 #include "shared/luminance.glsl"
@@ -13,14 +13,14 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 3) uniform sampler2D irradiance;  // fourth channel: the variance; read along the second axis only
 layout(binding = 0, rgba32f) uniform writeonly image2D blurred;
-layout(binding = 1, r32f) uniform image2D doubt;  // radiance
+layout(binding = 1, r32f) uniform image2D error_estimate;  // radiance
 uniform int interleave;
 uniform ivec2 axis;
-uniform float most_distance_m;
-uniform float least_cosine;
+uniform float max_distance_m;
+uniform float min_cosine;
 uniform float off_plane;
 uniform int ends;
-uniform int adds;  // to the doubt of another picture
+uniform int adds;  // to the error estimate of another picture
 
 struct Surface {
   vec3 position, normal;
@@ -34,8 +34,8 @@ float alike(Surface here, ivec2 at, ivec2 size) {
   float squared = dot(way, way);
   float height = dot(way, here.normal);
   float cosine = dot(octahedral_decode(texelFetch(normal_map, inside, 0).xy), here.normal);
-  bool like = inside == at && there.w != 0.0 && squared <= most_distance_m * most_distance_m &&
-              height * height <= off_plane * off_plane * squared && cosine >= least_cosine;
+  bool like = inside == at && there.w != 0.0 && squared <= max_distance_m * max_distance_m &&
+              height * height <= off_plane * off_plane * squared && cosine >= min_cosine;
   return like ? 1.0 : 0.0;
 }
 
@@ -95,5 +95,5 @@ void main() {
     }
   }
   imageStore(blurred, pixel, mean);
-  if (ends != 0) imageStore(doubt, pixel, vec4(error + (adds != 0 ? imageLoad(doubt, pixel).r : 0.0)));
+  if (ends != 0) imageStore(error_estimate, pixel, vec4(error + (adds != 0 ? imageLoad(error_estimate, pixel).r : 0.0)));
 }

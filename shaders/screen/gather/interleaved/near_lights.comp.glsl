@@ -1,5 +1,5 @@
 #version 450 core
-// Light of the pieces of virtual lights on the pixels near them.
+// Light of sub-lights on the pixels near them.
 #define LIGHT_PIECES_BINDING 3
 #include "screen/lights/resample/light_parts.glsl"
 #include "screen/base/gbuffer.glsl"

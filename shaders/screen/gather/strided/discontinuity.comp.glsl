@@ -44,7 +44,7 @@ Coarse coarse_at(ivec2 texel, ivec2 size) {
 
 void list(ivec2 pixel) {
   uint slot;
-  TAKE_SLOT(head, 64u, slot)
+  APPEND_TO_LIST(head, 64u, slot)
   listed[slot] = pack_pixel(pixel);
 }
 
@@ -52,7 +52,7 @@ void list(ivec2 pixel) {
 bool interpolate(ivec2 pixel, ivec2 size, Coarse around[4], vec2 t, out vec3 indirect, out vec3 direct) {
   vec3 position = texelFetch(position_map, pixel, 0).xyz;
   vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).xy);
-  vec3 least = vec3(1e30), most = vec3(0.0);
+  vec3 smallest = vec3(1e30), largest = vec3(0.0);
   indirect = direct = vec3(0.0);
   for (int k = 0; k < 4; ++k) {
     vec2 w = mix(1.0 - t, t, vec2(k & 1, k >> 1));
@@ -61,10 +61,10 @@ bool interpolate(ivec2 pixel, ivec2 size, Coarse around[4], vec2 t, out vec3 ind
     if (around[k].background || (weight < 1.0 && !alike(position, normal, around[k]))) return false;
     indirect += weight * around[k].indirect;
     direct += weight * around[k].direct;
-    least = min(least, around[k].indirect + around[k].direct);
-    most = max(most, around[k].indirect + around[k].direct);
+    smallest = min(smallest, around[k].indirect + around[k].direct);
+    largest = max(largest, around[k].indirect + around[k].direct);
   }
-  return all(lessThanEqual(most - least, contrast * most));
+  return all(lessThanEqual(largest - smallest, contrast * largest));
 }
 
 void light_pixel(ivec2 pixel, ivec2 size, Coarse around[4], vec2 t) {

@@ -12,7 +12,7 @@
 
 layout(local_size_x = 64) in;
 layout(binding = 0, rgba32f) uniform image2D target;  // irradiance; when the sum ends at full resolution radiance
-layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_A_BLOCK]; };
+layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_PER_BLOCK]; };
 uniform int first_light;  // of the block
 uniform int end_light;
 uniform int begins;
@@ -34,7 +34,7 @@ vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
 }
 
 #ifdef NEGATIVE
-layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[NEGATIVE_LIGHTS_MOST]; };
+layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[MAX_NEGATIVE_LIGHTS]; };
 uniform int negative_count;
 
 vec3 sum_of_negative_lights(vec3 x, vec3 normal) {

@@ -6,13 +6,13 @@
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 
-layout(std430, binding = LIGHT_PIECES_BINDING) readonly buffer Pieces { LightPiece pieces[]; };
+layout(std430, binding = LIGHT_PIECES_BINDING) readonly buffer Pieces { SubLight pieces[]; };
 
 struct Receiver {
   vec3 position, normal, geometric;
 };
 
-// Irradiance from piece p; `form` as far_share() takes it.
+// Irradiance from sub-light p; `form` as far_share() takes it.
 vec3 irradiance_of(Receiver at, int p, out float form) {
   vec3 w = pieces[p].position - at.position;
   float squared = dot(w, w);
@@ -24,21 +24,21 @@ vec3 irradiance_of(Receiver at, int p, out float form) {
 
 vec3 irradiance_of_quarter(Receiver at, int light, int quarter, float zone) {
   float form;
-  int first = light * LIGHT_PIECES;
+  int first = light * SUBLIGHTS_PER_LIGHT;
   vec3 whole = irradiance_of(at, first + quarter, form);
   float far = far_share(form, zone);
   if (far >= 1.0) return whole;
   vec3 sum = vec3(0.0);
-  for (int k = 0; k < LIGHT_PARTS / LIGHT_QUARTERS; ++k) {
+  for (int k = 0; k < FINE_SUBLIGHTS / COARSE_SUBLIGHTS; ++k) {
     float unused_form;
-    sum += irradiance_of(at, first + LIGHT_QUARTERS + quarter * (LIGHT_PARTS / LIGHT_QUARTERS) + k, unused_form);
+    sum += irradiance_of(at, first + COARSE_SUBLIGHTS + quarter * (FINE_SUBLIGHTS / COARSE_SUBLIGHTS) + k, unused_form);
   }
   return mix(sum, whole, far);
 }
 
 vec3 irradiance_of_parts(Receiver at, int light, float zone) {
   vec3 sum = vec3(0.0);
-  for (int quarter = 0; quarter < LIGHT_QUARTERS; ++quarter) sum += irradiance_of_quarter(at, light, quarter, zone);
+  for (int quarter = 0; quarter < COARSE_SUBLIGHTS; ++quarter) sum += irradiance_of_quarter(at, light, quarter, zone);
   return sum;
 }
 

@@ -4,7 +4,7 @@ layout(local_size_x = 256) in;
 layout(binding = 0) uniform sampler2DArray distance_map;
 layout(binding = 0, r32f) writeonly uniform image2D farthest;
 
-shared float most[256];
+shared float largest[256];
 
 void main() {
   int layer = int(gl_WorkGroupID.x);
@@ -15,11 +15,11 @@ void main() {
     float distance_m = texelFetch(distance_map, ivec3(i % resolution, i / resolution, layer), 0).r;
     if (!isinf(distance_m)) found = max(found, distance_m);
   }
-  most[me] = found;
+  largest[me] = found;
   for (uint half_count = 128u; half_count > 0u; half_count /= 2u) {
     barrier();
-    if (me < half_count) most[me] = max(most[me], most[me + half_count]);
+    if (me < half_count) largest[me] = max(largest[me], largest[me + half_count]);
   }
   // Where nothing is seen, receivers are nearer than everything.
-  if (me == 0u) imageStore(farthest, ivec2(layer, 0), vec4(most[0] > 0.0 ? most[0] : 1e30));
+  if (me == 0u) imageStore(farthest, ivec2(layer, 0), vec4(largest[0] > 0.0 ? largest[0] : 1e30));
 }

@@ -54,8 +54,8 @@ bool tile_may_touch(LayerTriangle t, ivec2 tile) {
   for (int k = 0; k < 3; ++k) {
     vec3 n = k == 0 ? t.edge_ab : k == 1 ? t.edge_bc : t.edge_ca;
     // dot(n, d) over the tile is its value at the middle, a slope and a curvature.
-    float most = dot(n, d) + reach * (2.0 * length(n.xy - disk * n.z) + reach * abs(n.z));
-    if (most < -9.54e-7 * length(n)) return false;
+    float upper_bound = dot(n, d) + reach * (2.0 * length(n.xy - disk * n.z) + reach * abs(n.z));
+    if (upper_bound < -9.54e-7 * length(n)) return false;
   }
   return true;
 }

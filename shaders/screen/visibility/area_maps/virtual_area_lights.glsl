@@ -8,13 +8,13 @@ struct ClusterCenter {
 };
 
 #ifdef CENTERS_UNIFORM
-layout(std140, binding = 0) uniform Centers { ClusterCenter centers[VIRTUAL_AREA_LIGHTS_MOST]; };
+layout(std140, binding = 0) uniform Centers { ClusterCenter centers[MAX_VIRTUAL_AREA_LIGHTS]; };
 #else
 layout(std430, binding = 2) buffer Centers { ClusterCenter centers[]; };
 #endif
 layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
-#ifdef FOURS_OF_CLUSTERS
-layout(std430, binding = 1) readonly buffer ClusterOf { uvec4 clusters_of_four[]; };
+#ifdef CLUSTERS_AS_UVEC4
+layout(std430, binding = 1) readonly buffer ClusterOf { uvec4 clusters_as_uvec4[]; };
 #else
 layout(std430, binding = 1) buffer ClusterOf { uint cluster_of[]; };  // behind the lights NO_VIRTUAL_AREA_LIGHT
 #endif

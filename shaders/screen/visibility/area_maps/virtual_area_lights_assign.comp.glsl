@@ -28,13 +28,13 @@ float angle_between(vec3 a, vec3 b) {
 
 uint nearest_cluster(vec3 position, vec3 normal) {
   uint nearest = NO_VIRTUAL_AREA_LIGHT;
-  float least = 3.0e38;
+  float smallest = 3.0e38;
   uint count = seeded;
   for (uint k = 0u; k < count; ++k) {
     float d = weight_per_m * length(position - centers[k].position) +
               weight_per_rad * angle_between(normal, centers[k].normal);
-    if (d < least) {
-      least = d;
+    if (d < smallest) {
+      smallest = d;
       nearest = k;
     }
   }

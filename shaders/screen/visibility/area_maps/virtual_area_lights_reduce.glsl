@@ -14,7 +14,7 @@ vec4 sum_of_group(vec4 own) {
   return partial[0];
 }
 
-vec4 least_of_group(vec4 own) {
+vec4 min_of_group(vec4 own) {
   uint t = gl_LocalInvocationIndex;
   barrier();
   partial[t] = own;

@@ -9,7 +9,7 @@
 #define THREADS 256
 layout(local_size_x = THREADS) in;
 uniform int cluster_count;
-uniform int most_iterations;
+uniform int max_iterations;
 shared ivec3 piece[THREADS];  // a, b, seeds that begin to wait; then: waiting, clusters seeded before
 
 // Numbers k with floor(k N / M) < i.
@@ -43,7 +43,7 @@ void main() {
     queue = ivec2(queue.x + a, max(queue.y + a, 0));
   }
   piece[t] = ivec3(queue, light_count > 0 ? seeds_before(end) - seeds_before(first) : 0);
-  for (int i = t; i < most_iterations; i += THREADS) moved[i] = 0u;
+  for (int i = t; i < max_iterations; i += THREADS) moved[i] = 0u;
   barrier();
   if (t == 0) scan_pieces();
   barrier();

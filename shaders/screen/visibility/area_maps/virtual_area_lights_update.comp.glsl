@@ -1,7 +1,7 @@
 #version 450 core
 // Every cluster's center: mean position and mean normal of its lights. A cluster that lost all of them stays where it
 // was. One work group a cluster.
-#define FOURS_OF_CLUSTERS
+#define CLUSTERS_AS_UVEC4
 #define GROUP 32
 #include "screen/visibility/area_maps/virtual_area_lights.glsl"
 #include "screen/visibility/area_maps/virtual_area_lights_reduce.glsl"
@@ -11,7 +11,7 @@ uint members(uint cluster, int four, int fours) {
   uint found = 0u;
   for (int s = 0; s < 8; ++s) {
     if (four + s * GROUP >= fours) break;
-    uvec4 bits = uvec4(equal(clusters_of_four[four + s * GROUP], uvec4(cluster)));
+    uvec4 bits = uvec4(equal(clusters_as_uvec4[four + s * GROUP], uvec4(cluster)));
     found |= (bits.x | bits.y << 1 | bits.z << 2 | bits.w << 3) << (4 * s);
   }
   return found;

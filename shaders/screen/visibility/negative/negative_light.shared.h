@@ -5,7 +5,7 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-#define NEGATIVE_LIGHTS_MOST 1024  // one uniform block
+#define MAX_NEGATIVE_LIGHTS 1024  // one uniform block
 
 // std140 and std430, 48 bytes. Irradiance to subtract at x: flux * (exponent + 1) / 2 * cos_x * cos_l^exponent /
 // (pi d^2 + area); exponent 1 is a virtual light's.

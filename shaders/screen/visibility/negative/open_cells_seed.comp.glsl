@@ -11,7 +11,7 @@ layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 uniform int light_count;
 
-#define LEAST_CELLS 0.02  // a light is this far in front of surfaces other than its own; depths err by far less
+#define MIN_CELLS 0.02  // a light is this far in front of surfaces other than its own; depths err by far less
 
 bool in_front_of_all_sides(ivec3 cell, vec3 light, vec3 normal) {
   uvec2 of_cell = cell_sides[cell_index(grid, cell)];
@@ -23,7 +23,7 @@ bool in_front_of_all_sides(ivec3 cell, vec3 light, vec3 normal) {
     vec3 at = vec3(cell) + 0.5;
     at[face >> 1] = side.depth;
     bool own = dot(side.normal, normal) > 0.9;
-    if (!own && dot(light - at, side.normal) < LEAST_CELLS) return false;
+    if (!own && dot(light - at, side.normal) < MIN_CELLS) return false;
   }
   return true;
 }
@@ -33,7 +33,7 @@ void main() {
   if (i >= light_count || lights[i].flux == vec3(0.0)) return;
   vec3 light = cell_from_world(grid, lights[i].position);
   // So far that the centre of the cell is in front of the light's plane.
-  ivec3 cell = ivec3(floor(light + (0.5 * staircase_factor(lights[i].normal) + LEAST_CELLS) * lights[i].normal));
+  ivec3 cell = ivec3(floor(light + (0.5 * staircase_factor(lights[i].normal) + MIN_CELLS) * lights[i].normal));
   if (cell_inside(grid, cell) && in_front_of_all_sides(cell, light, lights[i].normal))
     open_cells[cell_index(grid, cell)] = 1u;
 }

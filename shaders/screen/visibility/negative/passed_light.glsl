@@ -14,7 +14,7 @@ uniform vec3 view_axis;
 uniform float pixel_m2;  // area of a pixel on the plane at distance 1; of an orthographic camera everywhere
 
 // What lies in one plane with a light is not behind it, however normals and depths are rounded.
-#define LEAST_COSINE (4.0 * OCTAHEDRAL_ERROR_RAD)
+#define MIN_COSINE (4.0 * OCTAHEDRAL_ERROR_RAD)
 
 struct PassedLight {
   vec3 irradiance;  // on the surface's back [W m^-2]
@@ -28,7 +28,7 @@ void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight s
   float distance = sqrt(squared);
   // The cosine at the surface is the negated one: light arrives from behind.
   float cosine_here = dot(way, normal), cosine_there = dot(way, l.normal);
-  if (min(cosine_here, cosine_there) <= LEAST_COSINE * distance) return;
+  if (min(cosine_here, cosine_there) <= MIN_COSINE * distance) return;
   vec3 irradiance =
       l.flux * (cosine_here * cosine_there / (squared * (PI * squared + l.area_m2)));
   sum.irradiance += irradiance;

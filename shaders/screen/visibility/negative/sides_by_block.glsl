@@ -9,7 +9,7 @@
 #define BLOCK_ROWS (BLOCK_EDGE * BLOCK_EDGE)  // of cells along x
 
 layout(std430, binding = 7) buffer SidesByBlock { uint sides_by_block[]; };
-#ifdef MAKES_THE_LIST
+#ifdef WRITES_LIST
 layout(std430, binding = 2) buffer BlockStarts { uint block_starts[]; };  // counts first, then where each block begins
 #endif
 

@@ -1,7 +1,7 @@
 #version 450 core
 // How many sides each block has. A group a block, a row of cells to each of its threads.
 #include "shared/global_index.shared.h"
-#define MAKES_THE_LIST
+#define WRITES_LIST
 #include "screen/visibility/negative/sides_by_block.glsl"
 
 layout(local_size_x = BLOCK_ROWS) in;

@@ -1,7 +1,7 @@
 #version 450 core
 // Lists each block's sides. A group a block, a row of cells to each of its threads.
 #include "shared/global_index.shared.h"
-#define MAKES_THE_LIST
+#define WRITES_LIST
 #include "screen/visibility/negative/sides_by_block.glsl"
 #define SCAN_GROUP uint(BLOCK_ROWS)
 #include "shared/scan.glsl"

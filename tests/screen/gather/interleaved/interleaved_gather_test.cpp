@@ -1,5 +1,5 @@
 // The gather of virtual area lights: every light at every pixel against double precision; interleaved against every
-// pixel; no light over edges of geometry; the pixels in doubt.
+// pixel; no light over edges of geometry; the pixels that are gathered again.
 #include <algorithm>
 #include <random>
 
@@ -162,7 +162,7 @@ TEST_F(InterleavedGather, NothingBleedsOverEdges) {
   }
 }
 
-TEST_F(InterleavedGather, DoubtIsWhereTheErrorIs) {
+TEST_F(InterleavedGather, ErrorEstimateIsWhereTheErrorIs) {
   const Scene scene = floor_with_edges();
   Lit lit(context(), scene, {192, 144}, lights_above(1024, 1.4f, 2.0f, VIRTUAL_LIGHT_REFLECTED, 6),
           lights_above(512, 1.4f, 2.0f, VIRTUAL_LIGHT_EMITTED, 7));

@@ -1,8 +1,8 @@
-// Light of the parts of virtual lights on what is near them: against an integral over the lit surface.
+// Light of the sub-lights of virtual lights on what is near them: against an integral over the lit surface.
 #include <cmath>
 #include <numeric>
 
-#include "screen/lights/resample/virtual_light_parts.h"
+#include "screen/lights/resample/virtual_light_subdivision.h"
 #include "shaders/shared/near_light.shared.h"
 #include "tests/screen/gathered.h"
 #include "tests/screen/virtual_light_scenes.h"
@@ -41,10 +41,10 @@ double irradiance_of_wall(glm::dvec3 at) {
   constexpr int kSteps = 300;
   double sum = 0.0;
   // Steps in the angle from the wall's foot, so that the floor near it is seen as finely as it needs.
-  const double most = std::atan2(double(kFloorZ), at.y);
+  const double max_angle = std::atan2(double(kFloorZ), at.y);
   for (int j = 0; j < kSteps; ++j) {
-    const double angle = most * (j + 0.5) / kSteps;
-    const double z = at.y * std::tan(angle), dz = at.y * most / kSteps / (std::cos(angle) * std::cos(angle));
+    const double angle = max_angle * (j + 0.5) / kSteps;
+    const double z = at.y * std::tan(angle), dz = at.y * max_angle / kSteps / (std::cos(angle) * std::cos(angle));
     for (int i = 0; i < kSteps; ++i) {
       const double x = -double(kFloorX) + 2.0 * double(kFloorX) * (i + 0.5) / kSteps;
       const double squared = (x - at.x) * (x - at.x) + at.y * at.y + z * z;
@@ -83,7 +83,7 @@ double rms_error(const gl::Context& context, float near_zone) {
   return std::sqrt(sum / checked);
 }
 
-// Lights are 15 cm apart, their parts 4 cm.
+// Lights are 15 cm apart, their fine sub-lights 4 cm.
 TEST_F(NearLightsTest, AWallThatMeetsALitFloor) {
   const double with = rms_error(context(), 4.0f), without = rms_error(context(), 0.0f);
   RecordProperty("with", std::to_string(with));
@@ -92,8 +92,8 @@ TEST_F(NearLightsTest, AWallThatMeetsALitFloor) {
   EXPECT_GT(without, 1.8 * with);
 }
 
-// Ranges follow on one another, and parts share what their source sends: no flux or area is lost or doubled.
-TEST_F(NearLightsTest, PartsShareTheFluxOfTheirSource) {
+// Ranges follow on one another, and sub-lights share what their source sends: no flux or area is lost or doubled.
+TEST_F(NearLightsTest, SubLightsShareTheFluxOfTheirSource) {
   const Scene scene = floor_and_wall();
   VirtualLightOptions options;
   options.count = 64;
@@ -102,30 +102,30 @@ TEST_F(NearLightsTest, PartsShareTheFluxOfTheirSource) {
   Frames frames(context(), scene, options);
   const screen::VirtualLights& candidates = frames.run();
   Seen seen(context(), scene, at_the_edge(scene), kSize);
-  screen::ChooseVirtualLights choose(options.candidates);
-  choose.run(candidates.list(), seen.gbuffer, seen.timer);
-  screen::VirtualLightParts parts;
-  parts.run(frames.maps(), candidates, choose, seen.timer);
+  screen::ResampleVirtualLights resample(options.candidates);
+  resample.run(candidates.list(), seen.gbuffer, seen.timer);
+  screen::VirtualLightSubdivision subdivision;
+  subdivision.run(frames.maps(), candidates, resample, seen.timer);
 
-  const auto ranges = choose.ranges().download<glm::vec2>(64);
+  const auto ranges = resample.ranges().download<glm::vec2>(64);
   EXPECT_EQ(ranges.front().x, 0.0f);
   EXPECT_EQ(ranges.back().y, 1024.0f);
   for (size_t i = 1; i < ranges.size(); ++i) EXPECT_EQ(ranges[i].x, ranges[i - 1].y);
 
-  const auto pieces = parts.pieces().download<shared::LightPiece>(64 * LIGHT_PIECES);
-  double of_quarters = 0.0, of_parts = 0.0, area_m2 = 0.0;
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    const bool quarter = i % LIGHT_PIECES < LIGHT_QUARTERS;
-    (quarter ? of_quarters : of_parts) += double(pieces[i].flux.g);
-    if (!quarter && pieces[i].flux.g > 0.0f) area_m2 += double(pieces[i].area_m2);
+  const auto sublights = subdivision.sublights().download<shared::SubLight>(64 * SUBLIGHTS_PER_LIGHT);
+  double of_coarse = 0.0, of_fine = 0.0, area_m2 = 0.0;
+  for (size_t i = 0; i < sublights.size(); ++i) {
+    const bool coarse = i % SUBLIGHTS_PER_LIGHT < COARSE_SUBLIGHTS;
+    (coarse ? of_coarse : of_fine) += double(sublights[i].flux.g);
+    if (!coarse && sublights[i].flux.g > 0.0f) area_m2 += double(sublights[i].area_m2);
   }
   const double floor_m2 = 2.0 * double(kFloorX) * double(kFloorZ);
-  EXPECT_NEAR(of_quarters / of_parts, 1.0, 1e-5);
-  EXPECT_NEAR(of_parts / (0.5 * 3.0 * floor_m2), 1.0, 0.02);
+  EXPECT_NEAR(of_coarse / of_fine, 1.0, 1e-5);
+  EXPECT_NEAR(of_fine / (0.5 * 3.0 * floor_m2), 1.0, 0.02);
   EXPECT_NEAR(area_m2 / floor_m2, 1.0, 0.02);
 }
 
-// What a light keeps and what its parts carry is one, and neither changes by a jump.
+// What a light keeps and what its sub-lights carry add up to one, and neither jumps.
 TEST(FarShare, GoesFromNoneToAll) {
   constexpr float kZone = 4.0f, kPi = 3.14159265f;
   const auto share = [&](float squared) { return shared::far_share(squared / (kPi * squared + 1.0f), kZone); };

@@ -75,7 +75,7 @@ TEST_F(VirtualLightGatherTest, ThreeBlocksAreTheSumOfTheirLights) {
   const auto reflected = random_lights(1500, VIRTUAL_LIGHT_REFLECTED, 1);
   const auto emitted = random_lights(1000, VIRTUAL_LIGHT_EMITTED, 2);
   const VirtualLightListGl lights = list_of(reflected, emitted);
-  ASSERT_EQ(lights.buffer.bytes(), 3 * VIRTUAL_LIGHTS_A_BLOCK * sizeof(VirtualLight));
+  ASSERT_EQ(lights.buffer.bytes(), 3 * VIRTUAL_LIGHTS_PER_BLOCK * sizeof(VirtualLight));
   const Gathered picture = gathered(seen, lights, every_pixel());
   const Gathered emitted_only = gathered(seen, lights, every_pixel(), nullptr, VirtualLightGather::Part::emitted);
   int background = 0;

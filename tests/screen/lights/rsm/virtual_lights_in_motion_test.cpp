@@ -81,14 +81,14 @@ TEST_F(VirtualLightsInMotion, LeaveNothingBehindAndRepeat) {
     EXPECT_EQ(made.reflected(), 1500);
     scene.lights.erase(scene.lights.begin());
     EXPECT_EQ(frames.run().count(), 0);
-    ASSERT_EQ(made.buffer().bytes() % (VIRTUAL_LIGHTS_A_BLOCK * sizeof(VirtualLight)), 0u);
+    ASSERT_EQ(made.buffer().bytes() % (VIRTUAL_LIGHTS_PER_BLOCK * sizeof(VirtualLight)), 0u);
     EXPECT_TRUE(all_zero(made.buffer().download<unsigned char>(made.buffer().bytes())));
     scene.lights = one_of_each();
     const auto again = frames.run().download().lights;
     ASSERT_EQ(again.size(), first.size());
     EXPECT_EQ(std::memcmp(again.data(), first.data(), first.size() * sizeof(VirtualLight)), 0);
     const size_t used = first.size() * sizeof(VirtualLight);
-    EXPECT_GE(made.buffer().bytes(), 2 * VIRTUAL_LIGHTS_A_BLOCK * sizeof(VirtualLight));
+    EXPECT_GE(made.buffer().bytes(), 2 * VIRTUAL_LIGHTS_PER_BLOCK * sizeof(VirtualLight));
     EXPECT_TRUE(all_zero(made.buffer().download<unsigned char>(made.buffer().bytes() - used, used)));
   }
 }

@@ -64,7 +64,7 @@ std::vector<Receiver> floor_points(int n, float half_m) {
 
 struct Errors {
   double rmse = 0, full_shadow = 0, full_light = 0;  // the latter: mean visibility where it is exactly 0 and 1
-  float most_in_shadow = 0, least_in_light = 1;
+  float max_in_shadow = 0, min_in_light = 1;
 };
 
 Errors errors_of(const std::vector<float>& found, const std::vector<float>& exact) {
@@ -74,11 +74,11 @@ Errors errors_of(const std::vector<float>& found, const std::vector<float>& exac
     e.rmse += std::pow(double(found[i]) - double(exact[i]), 2.0);
     if (exact[i] == 0.0f) {
       e.full_shadow += double(found[i]);
-      e.most_in_shadow = std::max(e.most_in_shadow, found[i]);
+      e.max_in_shadow = std::max(e.max_in_shadow, found[i]);
       ++dark;
     } else if (exact[i] == 1.0f) {
       e.full_light += double(found[i]);
-      e.least_in_light = std::min(e.least_in_light, found[i]);
+      e.min_in_light = std::min(e.min_in_light, found[i]);
       ++bright;
     }
   }
@@ -105,7 +105,7 @@ using AreaLightShadowTest = GlTest;
 struct Limits {
   Method method;
   double rmse;
-  float most_in_shadow;
+  float max_in_shadow;
 };
 
 TEST_F(AreaLightShadowTest, PlateOverAFloor) {
@@ -120,8 +120,8 @@ TEST_F(AreaLightShadowTest, PlateOverAFloor) {
     SCOPED_TRACE(name_of(limit.method));
     const Errors e = errors_of(visibility(maps, limit.method, points), exact);
     EXPECT_LE(e.rmse, limit.rmse);
-    EXPECT_LE(e.most_in_shadow, limit.most_in_shadow);
-    EXPECT_GE(e.least_in_light, 0.995f);
+    EXPECT_LE(e.max_in_shadow, limit.max_in_shadow);
+    EXPECT_GE(e.min_in_light, 0.995f);
   }
 }
 
@@ -136,10 +136,10 @@ TEST_F(AreaLightShadowTest, PenumbrasRiseSteadily) {
     EXPECT_EQ(v.front(), 0.0f);
     EXPECT_EQ(v.back(), 1.0f);
     // One of 16 comparisons may fall back where the filter turns with the blockers found; ripples of the series.
-    float most = 0.0f;
+    float largest = 0.0f;
     for (const float value : v) {
-      EXPECT_GE(value, most - 0.07f);
-      most = std::max(most, value);
+      EXPECT_GE(value, largest - 0.07f);
+      largest = std::max(largest, value);
     }
     const auto partly = std::count_if(v.begin(), v.end(), [](float x) { return x > 0.02f && x < 0.98f; });
     if (method != Method::single) {  // the exact penumbra is 0.3 m wide

@@ -63,7 +63,7 @@ Comparison compare(const EmbreeScene& embree, const shared::VirtualAreaLight& li
 using ParaboloidDepthMaps = GlTest;
 
 void expect_rays(const gl::Context& context, const Scene& scene, const std::vector<shared::VirtualAreaLight>& lights,
-                 int resolution, double least_hits) {
+                 int resolution, double min_hits) {
   AreaLightMaps maps(context, scene, lights, resolution);
   const EmbreeScene embree(scene);
   const std::vector<float> distances = maps.distances();
@@ -77,7 +77,7 @@ void expect_rays(const gl::Context& context, const Scene& scene, const std::vect
     all.edges += c.edges;
   }
   EXPECT_EQ(all.unlike, 0);
-  EXPECT_GE(all.hits, least_hits * all.texels);
+  EXPECT_GE(all.hits, min_hits * all.texels);
   EXPECT_LE(all.edges, 0.02 * all.texels);
 }
 

@@ -13,10 +13,10 @@ namespace volgi::test {
 
 class PlainKMeans {
  public:
-  PlainKMeans(const std::vector<shared::VirtualLight>& lights, int clusters, double diagonal_m, int most_iterations)
+  PlainKMeans(const std::vector<shared::VirtualLight>& lights, int clusters, double diagonal_m, int max_iterations)
       : lights_(lights), diagonal_m_(diagonal_m), cluster_of_(lights.size(), NO_VIRTUAL_AREA_LIGHT) {
     seed(clusters);
-    while (iterations_ < most_iterations) {
+    while (iterations_ < max_iterations) {
       if (iterations_ > 0) update();
       if (!assign()) break;
       ++iterations_;
@@ -64,13 +64,13 @@ class PlainKMeans {
     double sum = 0.0;
     for (size_t i = 0; i < lights_.size(); ++i) {
       if (!has_flux(i)) continue;
-      double least = 1e30, second = 1e30;
+      double smallest = 1e30, second = 1e30;
       std::uint32_t nearest = NO_VIRTUAL_AREA_LIGHT;
       for (size_t k = 0; k < normals_.size(); ++k) {
         const double d = distance(i, k);
-        if (d < least) {
-          second = least;
-          least = d;
+        if (d < smallest) {
+          second = smallest;
+          smallest = d;
           nearest = std::uint32_t(k);
         } else {
           second = std::min(second, d);
@@ -78,8 +78,8 @@ class PlainKMeans {
       }
       moved = moved || cluster_of_[i] != nearest;
       cluster_of_[i] = nearest;
-      closest_call_ = std::min(closest_call_, second - least);
-      sum += least;
+      closest_call_ = std::min(closest_call_, second - smallest);
+      sum += smallest;
     }
     objective_.push_back(sum);
     return moved;

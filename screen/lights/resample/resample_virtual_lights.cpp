@@ -1,4 +1,4 @@
-#include "screen/lights/resample/choose_virtual_lights.h"
+#include "screen/lights/resample/resample_virtual_lights.h"
 
 #include <algorithm>
 #include <numeric>
@@ -13,19 +13,19 @@ constexpr int kReceivers = 256;  // of shaders/screen/lights/resample/light_cand
 
 }  // namespace
 
-ChooseVirtualLights::ChooseVirtualLights(int one_of)
-    : one_of_(one_of),
+ResampleVirtualLights::ResampleVirtualLights(int candidates_per_light)
+    : candidates_per_light_(candidates_per_light),
       receivers_(size_t(kReceivers) * 8 * sizeof(float)),
-      receivers_program_(gl::Program::compute("screen/lights/resample/choose_receivers.comp.glsl")),
-      weigh_(gl::Program::compute("screen/lights/resample/choose_weigh.comp.glsl")),
-      choose_(gl::Program::compute("screen/lights/resample/choose_virtual_lights.comp.glsl")),
-      sum_("screen/lights/resample/choose_sum.comp.glsl", {}) {}
+      receivers_program_(gl::Program::compute("screen/lights/resample/resample_receivers.comp.glsl")),
+      weigh_(gl::Program::compute("screen/lights/resample/resample_weights.comp.glsl")),
+      resample_(gl::Program::compute("screen/lights/resample/resample_virtual_lights.comp.glsl")),
+      sum_("screen/lights/resample/resample_sum.comp.glsl", {}) {}
 
-void ChooseVirtualLights::make_room(const VirtualLightListGl& candidates) {
+void ResampleVirtualLights::make_room(const VirtualLightListGl& candidates) {
   lights_.of_light.clear();
-  for (const int of_light : candidates.of_light) lights_.of_light.push_back(of_light / one_of_);
+  for (const int of_light : candidates.of_light) lights_.of_light.push_back(of_light / candidates_per_light_);
   lights_.reflected = std::accumulate(lights_.of_light.begin(), lights_.of_light.end(), 0);
-  lights_.emitted = candidates.emitted / one_of_;
+  lights_.emitted = candidates.emitted / candidates_per_light_;
   const size_t bytes = padded_count(lights_) * sizeof(shared::VirtualLight);
   if (lights_.buffer.bytes() != bytes) lights_.buffer = gl::Buffer(bytes);
   lights_.buffer.clear();
@@ -33,7 +33,7 @@ void ChooseVirtualLights::make_room(const VirtualLightListGl& candidates) {
   gl::reserve(weights_, size_t(std::max(candidates.count(), 1)) * 2 * sizeof(float));
 }
 
-void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer) {
+void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   make_room(candidates);
   candidates.buffer.bind_storage(0);
@@ -47,16 +47,16 @@ void ChooseVirtualLights::run(const VirtualLightListGl& candidates, const GBuffe
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   int first = 0;
   for (const int count : lights_.of_light) {
-    choose(first * one_of_, count * one_of_, first, count);
+    resample(first * candidates_per_light_, count * candidates_per_light_, first, count);
     first += count;
   }
-  choose(first * one_of_, lights_.emitted * one_of_, first, lights_.emitted);
+  resample(first * candidates_per_light_, lights_.emitted * candidates_per_light_, first, lights_.emitted);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void ChooseVirtualLights::choose(int first_candidate, int candidates, int first, int count) {
+void ResampleVirtualLights::resample(int first_candidate, int candidates, int first, int count) {
   if (count == 0) return;
-  for (const gl::Program* program : {&weigh_, &choose_}) {
+  for (const gl::Program* program : {&weigh_, &resample_}) {
     program->set("first_candidate", first_candidate);
     program->set("candidate_count", candidates);
     program->set("flux_share", kFluxShare);
@@ -67,9 +67,9 @@ void ChooseVirtualLights::choose(int first_candidate, int candidates, int first,
   gl::dispatch_linear(size_t(candidates), 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_.run();
-  choose_.set("first", first);
-  choose_.set("count", count);
-  choose_.use();
+  resample_.set("first", first);
+  resample_.set("count", count);
+  resample_.use();
   gl::dispatch_linear(size_t(count), 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

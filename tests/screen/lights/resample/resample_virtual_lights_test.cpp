@@ -7,7 +7,7 @@
 #include "core/hilbert.h"
 #include "core/luminance.h"
 #include "screen/frame/frame.h"
-#include "screen/lights/resample/choose_virtual_lights.h"
+#include "screen/lights/resample/resample_virtual_lights.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/virtual_lights.h"
 #include "tests/screen/gathered.h"
@@ -17,10 +17,10 @@
 namespace volgi::test {
 namespace {
 
-using ChooseVirtualLightsTest = GlTest;
-using screen::ChooseVirtualLights;
+using ResampleVirtualLightsTest = GlTest;
+using screen::ResampleVirtualLights;
 
-/// Share of what is chosen that each candidate of one source has (screen/lights/resample/choose_virtual_lights.h).
+/// Share of what is chosen that each candidate of one source has (screen/lights/resample/resample_virtual_lights.h).
 std::vector<double> probabilities(const std::vector<VirtualLight>& candidates, const Seen& seen) {
   std::vector<double> sent(candidates.size()), flux(candidates.size());
   for (size_t i = 0; i < candidates.size(); ++i) {
@@ -42,7 +42,7 @@ std::vector<double> probabilities(const std::vector<VirtualLight>& candidates, c
   const double all_flux = std::accumulate(flux.begin(), flux.end(), 0.0);
   for (size_t i = 0; i < sent.size(); ++i) {
     const double by_flux = all_flux > 0.0 ? flux[i] / all_flux : 0.0;
-    const double share = double(ChooseVirtualLights::kFluxShare);
+    const double share = double(ResampleVirtualLights::kFluxShare);
     sent[i] = all_sent > 0.0 ? (1.0 - share) * sent[i] / all_sent + share * by_flux : by_flux;
   }
   return sent;
@@ -71,8 +71,8 @@ Seen stage_seen(const gl::Context& context) {
   return {context, scene, stage_camera(scene), {64, 48}};
 }
 
-std::vector<VirtualLight> chosen(Seen& seen, const VirtualLightListGl& candidates, int one_of) {
-  ChooseVirtualLights choose(one_of);
+std::vector<VirtualLight> chosen(Seen& seen, const VirtualLightListGl& candidates, int candidates_per_light) {
+  ResampleVirtualLights choose(candidates_per_light);
   choose.run(candidates, seen.gbuffer, seen.timer);
   const VirtualLightListGl& list = choose.lights();
   EXPECT_EQ(list.reflected, std::accumulate(list.of_light.begin(), list.of_light.end(), 0));
@@ -81,7 +81,7 @@ std::vector<VirtualLight> chosen(Seen& seen, const VirtualLightListGl& candidate
 }
 
 // Light k is the candidate at the place (k + 1/2) / count of the summed probabilities, and carries 1 / (count p) of it.
-TEST_F(ChooseVirtualLightsTest, EqualStepsThroughTheSummedWeights) {
+TEST_F(ResampleVirtualLightsTest, EqualStepsThroughTheSummedWeights) {
   Seen seen = stage_seen(context());
   const auto candidates = candidates_of(1600, 0, 1);
   const std::vector<double> p = probabilities(candidates, seen);
@@ -105,7 +105,7 @@ TEST_F(ChooseVirtualLightsTest, EqualStepsThroughTheSummedWeights) {
 
 // The sum over what is chosen is a midpoint rule for the sum over the candidates: its error is at most the variation of
 // flux over probability, of count. Over many orders of the candidates it is right in the mean.
-TEST_F(ChooseVirtualLightsTest, KeepTheSumOfFlux) {
+TEST_F(ResampleVirtualLightsTest, KeepTheSumOfFlux) {
   Seen seen = stage_seen(context());
   auto candidates = candidates_of(800, 0, 2);
   const double exact = sum_of_flux(candidates).r;
@@ -131,7 +131,7 @@ TEST_F(ChooseVirtualLightsTest, KeepTheSumOfFlux) {
   EXPECT_LT(deviation, 0.5);
 }
 
-TEST_F(ChooseVirtualLightsTest, EverySourceKeepsItsNumber) {
+TEST_F(ResampleVirtualLightsTest, EverySourceKeepsItsNumber) {
   Seen seen = stage_seen(context());
   std::vector<VirtualLight> candidates;
   for (const auto& [count, source] : {std::pair(800, 0), {8, 2}, {1600, 3}}) {
@@ -142,7 +142,7 @@ TEST_F(ChooseVirtualLightsTest, EverySourceKeepsItsNumber) {
   for (VirtualLight& l : emitted) l.kind = VIRTUAL_LIGHT_EMITTED;
   VirtualLightListGl list = list_of(candidates, emitted);
   list.of_light = {800, 0, 8, 1600};
-  ChooseVirtualLights choose(8);
+  ResampleVirtualLights choose(8);
   choose.run(list, seen.gbuffer, seen.timer);
   EXPECT_EQ(choose.lights().of_light, (std::vector<int>{100, 0, 1, 200}));
   EXPECT_EQ(choose.lights().reflected, 301);
@@ -157,7 +157,7 @@ TEST_F(ChooseVirtualLightsTest, EverySourceKeepsItsNumber) {
   EXPECT_EQ(std::memcmp(alone.data(), &lights[101], alone.size() * sizeof(VirtualLight)), 0);
 }
 
-TEST_F(ChooseVirtualLightsTest, LightsThatFaceAwayAreRare) {
+TEST_F(ResampleVirtualLightsTest, LightsThatFaceAwayAreRare) {
   Seen seen = stage_seen(context());
   std::vector<VirtualLight> candidates;
   for (int i = 0; i < 800; ++i) {
@@ -168,12 +168,12 @@ TEST_F(ChooseVirtualLightsTest, LightsThatFaceAwayAreRare) {
   std::shuffle(candidates.begin(), candidates.end(), std::mt19937(5));
   int away = 0;
   for (const VirtualLight& l : chosen(seen, list_of(candidates), 8)) away += l.normal.y > 0.0f;
-  const double expected = 0.5 * double(ChooseVirtualLights::kFluxShare) * 100.0;
+  const double expected = 0.5 * double(ResampleVirtualLights::kFluxShare) * 100.0;
   EXPECT_GT(away, 0);
   EXPECT_NEAR(away, expected, 3.0 * std::sqrt(expected));
 }
 
-TEST_F(ChooseVirtualLightsTest, WithoutWeightsFluxDecidesAndWithoutFluxNothing) {
+TEST_F(ResampleVirtualLightsTest, WithoutWeightsFluxDecidesAndWithoutFluxNothing) {
   Seen seen = stage_seen(context());
   auto candidates = candidates_of(800, 0, 4);
   for (VirtualLight& l : candidates) l.normal = {0, 1, 0}, l.position.y = 5.0f;  // above all, facing up
@@ -192,7 +192,7 @@ TEST_F(ChooseVirtualLightsTest, WithoutWeightsFluxDecidesAndWithoutFluxNothing) 
 }
 
 // 1: the paper's samples, as VirtualLights makes them.
-TEST_F(ChooseVirtualLightsTest, OneOfOneIsNoChoice) {
+TEST_F(ResampleVirtualLightsTest, OneOfOneIsNoChoice) {
   Scene scene = colourful_room();
   scene.lights = {point_light(kLamp, 2.5f)};
   screen::FrameOptions o;
