@@ -89,7 +89,7 @@ Start start_of(const VoxelGrid& voxels, const EmbreeScene& embree, const Side& s
   return {shared::world_from_cell(voxels.grid(), point), centre, {}};
 }
 
-/// A light or a piece of one, as a side sees it.
+/// A light or a sub-light of one, as a side sees it.
 struct Disk {
   glm::vec3 position, normal, flux;
   float area_m2;
@@ -114,9 +114,9 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
   return light.flux * (cosines / (glm::pi<float>() * squared + light.area_m2));
 }
 
-glm::vec3 irradiance_of_piece(const EmbreeScene& embree, const Side& side, const Start& start,
-                              const shared::SubLight& piece, std::uint32_t seed) {
-  const Disk disk{piece.position, octahedral_decode(piece.normal), piece.flux, piece.area_m2};
+glm::vec3 irradiance_of_sublight(const EmbreeScene& embree, const Side& side, const Start& start,
+                                 const shared::SubLight& sublight, std::uint32_t seed) {
+  const Disk disk{sublight.position, octahedral_decode(sublight.normal), sublight.flux, sublight.area_m2};
   return irradiance_of(embree, side, start, disk, embree.leaving_point(disk.position, -disk.normal, FAR), seed);
 }
 
@@ -127,27 +127,28 @@ float far_share_at(glm::vec3 point, glm::vec3 position, float area_m2, float zon
   return shared::far_share(squared / (glm::pi<float>() * squared + area_m2 + 1e-30f), zone);
 }
 
-/// Of a light's pieces: its quarters, and nearer by half the parts of those. As near_lights.comp.glsl has it.
-glm::vec3 irradiance_of_pieces(const EmbreeScene& embree, const Side& side, const Start& start,
-                               std::span<const shared::SubLight> pieces, float zone, std::uint32_t seed) {
-  constexpr size_t PARTS_A_QUARTER = FINE_SUBLIGHTS / COARSE_SUBLIGHTS;
+/// Of a light's sub-lights: its coarse ones, and nearer by half the fine ones of those. As near_lights.comp.glsl has
+/// it.
+glm::vec3 irradiance_of_sublights(const EmbreeScene& embree, const Side& side, const Start& start,
+                                  std::span<const shared::SubLight> sublights, float zone, std::uint32_t seed) {
+  constexpr size_t FINE_PER_COARSE = FINE_SUBLIGHTS / COARSE_SUBLIGHTS;
   glm::vec3 sum(0.0f);
-  for (size_t quarter = 0; quarter < COARSE_SUBLIGHTS; ++quarter) {
-    const shared::SubLight& whole = pieces[quarter];
+  for (size_t coarse = 0; coarse < COARSE_SUBLIGHTS; ++coarse) {
+    const shared::SubLight& whole = sublights[coarse];
     const float far = far_share_at(start.position, whole.position, whole.area_m2, zone);
-    if (far > 0.0f) sum += far * irradiance_of_piece(embree, side, start, whole, seed);
+    if (far > 0.0f) sum += far * irradiance_of_sublight(embree, side, start, whole, seed);
     if (far >= 1.0f) continue;
-    for (size_t k = 0; k < PARTS_A_QUARTER; ++k) {
-      const shared::SubLight& part = pieces[COARSE_SUBLIGHTS + quarter * PARTS_A_QUARTER + k];
-      sum += (1.0f - far) * irradiance_of_piece(embree, side, start, part, seed + std::uint32_t(k));
+    for (size_t k = 0; k < FINE_PER_COARSE; ++k) {
+      const shared::SubLight& part = sublights[COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE + k];
+      sum += (1.0f - far) * irradiance_of_sublight(embree, side, start, part, seed + std::uint32_t(k));
     }
   }
   return sum;
 }
 
-/// What a light has itself and not its pieces.
+/// What a light has itself and not its sub-lights.
 float share_of_light(const VirtualLightsForSides& from, size_t light, glm::vec3 point) {
-  if (from.pieces.empty()) return 1.0f;
+  if (from.sublights.empty()) return 1.0f;
   return far_share_at(point, from.lights[light].position, from.lights[light].area_m2, from.near_zone);
 }
 
@@ -162,7 +163,7 @@ int automatic_stride(size_t sides, size_t lights) {
 std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& embree,
                                    const VirtualLightsForSides& from, size_t first, size_t end, int stride) {
   assert(stride >= 1 && end <= from.lights.size());
-  assert(from.pieces.empty() || from.pieces.size() >= from.lights.size() * SUBLIGHTS_PER_LIGHT);
+  assert(from.sublights.empty() || from.sublights.size() >= from.lights.size() * SUBLIGHTS_PER_LIGHT);
   std::vector<glm::vec3> ends(from.lights.size());
   for (size_t i = first; i < end; ++i)
     ends[i] = embree.leaving_point(from.lights[i].position, -from.lights[i].normal, FAR);
@@ -177,17 +178,17 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
       const VirtualLight& light = from.lights[k];
       const float share = share_of_light(from, k, start.position);
       if (share <= 0.0f) continue;
-      // Peaks near a light are its parts' part.
-      const float spread_m2 = from.pieces.empty() ? std::min(float(stride - 1) * light.area_m2, side.area_m2) : 0.0f;
+      // Peaks near a light are its sub-lights'.
+      const float spread_m2 = from.sublights.empty() ? std::min(float(stride - 1) * light.area_m2, side.area_m2) : 0.0f;
       const float area_m2 = light.area_m2 + spread_m2;
       far += share * irradiance_of(embree, side, start, {light.position, light.normal, light.flux, area_m2}, ends[k],
                                    seed_of(k));
     }
-    for (size_t k = first; k < end && !from.pieces.empty(); ++k) {
+    for (size_t k = first; k < end && !from.sublights.empty(); ++k) {
       const float share = 1.0f - share_of_light(from, k, start.position);
       if (share <= 0.0f) continue;
-      const std::span<const shared::SubLight> pieces(&from.pieces[k * SUBLIGHTS_PER_LIGHT], SUBLIGHTS_PER_LIGHT);
-      near += share * irradiance_of_pieces(embree, side, start, pieces, from.near_zone, seed_of(k));
+      const std::span<const shared::SubLight> sublights(&from.sublights[k * SUBLIGHTS_PER_LIGHT], SUBLIGHTS_PER_LIGHT);
+      near += share * irradiance_of_sublights(embree, side, start, sublights, from.near_zone, seed_of(k));
     }
     irradiance[i] = glm::vec4(far * float(stride) + near, 0.0f);
   });

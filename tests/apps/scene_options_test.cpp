@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+
 #include "apps/volgi/scene_options.h"
 #include "core/error.h"
 

@@ -66,7 +66,6 @@ class Animation : public GlTest {
   struct Technique {
     std::string name;
     screen::FrameOptions options;
-    options.recipe = "volume";
   };
   static std::vector<Technique> techniques() {
     return {{"none", options(Gi("none"))},

@@ -1,6 +1,8 @@
 // `conservative` on the CPU, both orders: against a plain pulse in double precision, and what the scheme promises.
 #include "propagation/transport_conservative_cpu.h"
 
+#include <openvdb/openvdb.h>
+
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 

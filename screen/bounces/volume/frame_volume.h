@@ -27,7 +27,7 @@ class FrameVolume {
  public:
   virtual ~FrameVolume() = default;
   /// Virtual lights are there, what is seen of them is not yet: a copy to the host may begin.
-  virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightSubdivision* /*parts*/,
+  virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightSubdivision* /*subdivision*/,
                             gl::PassTimer& /*timer*/) {}
   /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce starts from, else null.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,

@@ -19,8 +19,8 @@ void SideGatherGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounc
   flux.emitted().bind_storage(6);
   flux.punctual().bind_storage(7);
   first_bounce.clusters.shadow.bind(first_bounce.clusters.maps, program_);
-  if (first_bounce.parts != nullptr) first_bounce.parts->pieces().bind_storage(8);
-  program_.set("zone", first_bounce.parts != nullptr ? first_bounce.near_zone : 0.0f);
+  if (first_bounce.subdivision != nullptr) first_bounce.subdivision->sublights().bind_storage(8);
+  program_.set("zone", first_bounce.subdivision != nullptr ? first_bounce.near_zone : 0.0f);
   program_.set("light_count", lights.count());
   program_.use();
   gl::dispatch_linear(voxels.side_capacity, 64);

@@ -12,8 +12,8 @@ namespace volgi::screen {
 struct FirstBounce {
   const VirtualLightListGl& lights;
   const LightClusters& clusters;
-  const VirtualLightSubdivision* parts;  // what lights those near it instead; null: nobody
-  float near_zone;                 // areas of a light; 0 without parts
+  const VirtualLightSubdivision* subdivision;  // what lights those near it instead; null: nobody
+  float near_zone;                             // areas of a light; 0 without subdivision
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area

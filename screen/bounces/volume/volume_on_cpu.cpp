@@ -29,28 +29,30 @@ void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const Light& light) {
   stage("propagation/side_irradiance_cpu", [&] { volume.irradiate(); });
 }
 
-/// The picture's own virtual lights, and their parts, on the host: the copy is asked for as soon as they are there, and
-/// waited for when all that the GPU does for pixels is under way.
+/// The picture's own virtual lights, and their subdivision, on the host: the copy is asked for as soon as they are
+/// there, and waited for when all that the GPU does for pixels is under way.
 class LightsOnHost {
  public:
-  void begin(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts) {
+  void begin(const VirtualLightListGl& lights, const VirtualLightSubdivision* subdivision) {
     copy(lights.buffer, size_t(lights.count()) * sizeof(shared::VirtualLight), lights_copy_);
-    if (parts != nullptr)
-      copy(parts->pieces(), size_t(lights.count()) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight), pieces_copy_);
+    if (subdivision != nullptr)
+      copy(subdivision->sublights(), size_t(lights.count()) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight),
+           sublights_copy_);
   }
-  /// begin() comes first. @param near_zone  of the parts.
-  const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts, float near_zone) {
+  /// begin() comes first. @param near_zone  of the subdivision.
+  const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightSubdivision* subdivision,
+                                   float near_zone) {
     const auto count = size_t(lights.count());
     fetch(lights_copy_, count, host_.lights);
     host_.reflected = lights.reflected;
-    host_.pieces.clear();
+    host_.sublights.clear();
     host_.near_zone = near_zone;
-    if (parts != nullptr) fetch(pieces_copy_, count * SUBLIGHTS_PER_LIGHT, host_.pieces);
+    if (subdivision != nullptr) fetch(sublights_copy_, count * SUBLIGHTS_PER_LIGHT, host_.sublights);
     return host_;
   }
   size_t bytes() const {
     return host_.lights.capacity() * sizeof(shared::VirtualLight) +
-           host_.pieces.capacity() * sizeof(shared::SubLight);
+           host_.sublights.capacity() * sizeof(shared::SubLight);
   }
 
  private:
@@ -71,7 +73,7 @@ class LightsOnHost {
   }
 
   VirtualLightsForSides host_;
-  Copy lights_copy_, pieces_copy_;
+  Copy lights_copy_, sublights_copy_;
 };
 
 size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
@@ -105,9 +107,10 @@ class SidesOnCpu : public FrameVolume {
     look_at_geometry();
   }
 
-  void lights_ready(const VirtualLightListGl& lights, const VirtualLightSubdivision* parts, gl::PassTimer& timer) override {
+  void lights_ready(const VirtualLightListGl& lights, const VirtualLightSubdivision* subdivision,
+                    gl::PassTimer& timer) override {
     const auto scope = timer.scope("screen/bounces/volume/copy_lights");
-    lights_.begin(lights, parts);
+    lights_.begin(lights, subdivision);
   }
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
@@ -149,7 +152,7 @@ class SidesOnCpu : public FrameVolume {
   SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
-        lights_.end(first_bounce->lights, first_bounce->parts, first_bounce->near_zone);
+        lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->near_zone);
     return flux_after_first_bounce(voxels, *embree_, lights, options_.bounces.has_value());
   }
   static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "shaders/screen/gather/interleaved/exact_pixels.shared.h"
 
 namespace volgi::screen {
 
@@ -12,9 +13,7 @@ namespace {
 
 constexpr size_t kLightBytes = sizeof(shared::VirtualLight);
 constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_PER_BLOCK * kLightBytes;
-constexpr int kAlign = 16;           // lights: 768 bytes, a multiple of every offset alignment that GL allows
-constexpr size_t kErrorBins = 2048;  // exact_pixels.glsl
-constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
+constexpr int kAlign = 16;  // lights: 768 bytes, a multiple of every offset alignment that GL allows
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
 
@@ -54,8 +53,8 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   indirect_irradiance_ = picture(size);
   half_blurred_ = picture(size);
   error_estimate_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
-  bins_ = gl::Buffer((1 + kErrorBins) * sizeof(GLuint));
-  list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
+  bins_ = gl::Buffer((1 + ERROR_BINS) * sizeof(GLuint));
+  list_.reserve(size_t(size.x) * size_t(size.y));
   gather_listed_ =
       gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define(), "LISTED"});
   blur_ = gl::Program::compute("screen/gather/interleaved/geometry_blur.comp.glsl");
@@ -151,10 +150,10 @@ void AreaLightGather::gather_interleaved() {
 void AreaLightGather::gather_listed() {
   indirect_.bind_image(0, GL_READ_WRITE);
   direct_.bind_image(1, GL_READ_WRITE);
-  list_.bind_storage(0);
+  list_.bind(0);
   gather_listed_.set("interleave", 1);
   gather_listed_.use();
-  gather(gather_listed_, {0, light_count_}, [this] { gl::dispatch_indirect(list_); });
+  gather(gather_listed_, {0, light_count_}, [this] { list_.dispatch(); });
   wait_for_pictures();
 }
 
@@ -179,11 +178,10 @@ void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool 
 }
 
 void AreaLightGather::list_worst_pixels() {
-  constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
-  list_.upload(nothing.data(), sizeof nothing);
+  list_.clear();
   bins_.clear();
   error_estimate_.bind_image(0, GL_READ_ONLY);
-  list_.bind_storage(0);
+  list_.bind(0);
   bins_.bind_storage(1);
   count_.use();
   gl::dispatch({size_.x, size_.y, 1}, {64, 64, 1});

@@ -4,6 +4,7 @@
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/virtual_light_list_gl.h"
+#include "screen/base/work_list.h"
 #include "screen/visibility/area_maps/area_light_shadow.h"
 #include "screen/visibility/area_maps/virtual_area_lights.h"
 
@@ -14,7 +15,8 @@ struct AreaLightGatherOptions {
   /// n: pixels of a block of n x n share the lights, 1 / n^2 to each, and a blur over such blocks joins them. 1, 2, 4
   /// or 8; 1 gathers every light at every pixel, without blur.
   int interleave = 4;
-  /// The pixels with the largest error estimates, as many as this number of rows of the picture holds, are gathered again with every light. They lie along edges and shadows, which are lines: their number grows as rows do. 10 and
+  /// The pixels with the largest error estimates, as many as this number of rows of the picture holds, are gathered
+  /// again with every light. They lie along edges and shadows, which are lines: their number grows as rows do. 10 and
   /// blocks of 4 x 4 leave 3 % at 192 rows, for 12 to 14 % of the time of every light at every pixel.
   float exact_rows = 10.0f;
   /// The blur joins pixels no farther apart than this part of the scene's diagonal (alpha of the paper), ...
@@ -29,8 +31,8 @@ struct AreaLightGatherOptions {
 /// after Segovia et al. 2006, a blur that does not cross edges of geometry). We depart: in the subsets: neighbours in
 /// the order of clusters, so that a pixel looks at few shadows, and subsets that follow on one another lie far apart in
 /// the block; in the blur: it interpolates every subset between the nearest pixels that have it, instead of a mean; and
-/// the pixels with the largest error estimates, by what the blur has seen vary, are gathered again with every light. Cost a pixel: lights
-/// / n^2, and exact_rows / rows of all of them; 6 n - 3 texels of the blur.
+/// the pixels with the largest error estimates, by what the blur has seen vary, are gathered again with every light.
+/// Cost a pixel: lights / n^2, and exact_rows / rows of all of them; 6 n - 3 texels of the blur.
 class AreaLightGather {
  public:
   static constexpr const char* arrange_name = "screen/gather/interleaved/arrange_lights";
@@ -66,10 +68,10 @@ class AreaLightGather {
   glm::ivec2 size_;
   gl::Texture direct_, indirect_;
   gl::Texture direct_irradiance_, indirect_irradiance_, half_blurred_;
-  gl::Texture error_estimate_;    // R32F: radiance that a pixel may err by
-  gl::Buffer arranged_;  // shared::VirtualLight in the order of clusters; source is the area light
-  gl::Buffer bins_;      // uint: threshold, then pixels in each bin of the error estimate (exact_pixels.glsl)
-  gl::Buffer list_;      // pixels: coarse_pixels.glsl
+  gl::Texture error_estimate_;  // R32F: radiance that a pixel may err by
+  gl::Buffer arranged_;         // shared::VirtualLight in the order of clusters; source is the area light
+  gl::Buffer bins_;             // uint: threshold, then pixels in each bin of the error estimate (exact_pixels.glsl)
+  WorkList list_;               // pixels: coarse_pixels.glsl
   int light_count_ = 0;
   bool with_direct_ = false;
   gl::Program arrange_, gather_, gather_listed_, blur_, count_, threshold_, list_program_;

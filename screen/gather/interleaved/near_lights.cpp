@@ -25,20 +25,19 @@ NearLights::NearLights(glm::ivec2 size, float zone)
   direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
 }
 
-void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
-                            gl::PassTimer& timer) {
+void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights,
+                            const VirtualLightSubdivision& subdivision, gl::PassTimer& timer) {
   const auto scope = timer.scope(tiles_name);
   const auto words = size_t(lights.count() + 31) / 32;
   const glm::ivec2 large = tiles_of(size_, NEAR_TILE * LARGE_TILE), small = tiles_of(size_, NEAR_TILE);
   const size_t large_count = size_t(large.x) * size_t(large.y), small_count = size_t(small.x) * size_t(small.y);
-  constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
-  gl::reserve(list_, sizeof nothing + small_count * sizeof(GLuint));
+  list_.reserve(small_count);
   gl::reserve(boxes_, small_count * 2 * sizeof(glm::vec4));
   gl::reserve(masks_, small_count * words * sizeof(GLuint));
   gl::reserve(large_masks_, large_count * words * sizeof(GLuint));
-  list_.upload(nothing.data(), sizeof nothing);
+  list_.clear();
   subdivision.near_lights().bind_storage(0);
-  list_.bind_storage(1);
+  list_.bind(1);
   masks_.bind_storage(2);
   large_masks_.bind_storage(4);
   boxes_.bind_storage(5);
@@ -57,8 +56,8 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
   run(tiles_program_, small_count);
 }
 
-void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,
-                     gl::PassTimer& timer) {
+void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
+                     const VirtualLightSubdivision& subdivision, gl::PassTimer& timer) {
   find_tiles(gbuffer, lights, subdivision, timer);
   const auto scope = timer.scope(name);
   indirect_.clear({0.0f, 0.0f, 0.0f, 0.0f});
@@ -69,14 +68,14 @@ void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, c
   gather_.set("first_emitted", lights.reflected);
   gather_.set("with_direct", lights.emitted > 0 ? 1 : 0);
   subdivision.near_lights().bind_storage(0);
-  list_.bind_storage(1);
+  list_.bind(1);
   masks_.bind_storage(2);
   subdivision.sublights().bind_storage(3);
   gbuffer.bind();
   indirect_.bind_image(0, GL_WRITE_ONLY);
   direct_.bind_image(1, GL_WRITE_ONLY);
   gather_.use();
-  gl::dispatch_indirect(list_);
+  list_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 

@@ -8,15 +8,12 @@ namespace volgi::screen {
 namespace {
 
 constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_PER_BLOCK * sizeof(shared::VirtualLight);
-constexpr size_t kHeadBytes = 4 * sizeof(GLuint);
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
 
 glm::ivec2 coarse_size(glm::ivec2 size, int stride) { return (size - 1 + stride - 1) / stride + 1; }
 
-void bind_pixels(const GBuffer& gbuffer) {
-  gbuffer.bind();
-}
+void bind_pixels(const GBuffer& gbuffer) { gbuffer.bind(); }
 
 }  // namespace
 
@@ -26,7 +23,7 @@ VirtualLightGather::VirtualLightGather(glm::ivec2 size, const GatherOptions& opt
   if (options_.stride == 1) return;
   coarse_direct_ = picture(coarse_size(size, options_.stride));
   coarse_indirect_ = picture(coarse_size(size, options_.stride));
-  list_ = gl::Buffer(kHeadBytes + size_t(size.x) * size_t(size.y) * sizeof(GLuint));
+  list_.reserve(size_t(size.x) * size_t(size.y));
   discontinuity_ = gl::Program::compute("screen/gather/strided/discontinuity.comp.glsl");
 }
 
@@ -70,7 +67,7 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
   program.use();
   program.set("stride", listed ? 1 : options_.stride);
   target.bind_image(0, GL_READ_WRITE);
-  if (listed) list_.bind_storage(0);
+  if (listed) list_.bind(0);
   if (negative != nullptr) negative->buffer().bind_uniform(1);
   // At least one dispatch, which leaves black where there are no lights.
   const int first_block = first / VIRTUAL_LIGHTS_PER_BLOCK;
@@ -84,7 +81,7 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
     program.set("ends", block == last_block ? 1 : 0);
     if (negative != nullptr) program.set("negative_count", negative->count());
     if (listed) {
-      gl::dispatch_indirect(list_);
+      list_.dispatch();
     } else {
       gl::dispatch_linear(size_t(target.size().x) * size_t(target.size().y), 64);
     }
@@ -93,8 +90,7 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
 }
 
 void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m) {
-  constexpr std::array<GLuint, 4> nothing{0, 1, 1, 0};
-  list_.upload(nothing.data(), sizeof nothing);
+  list_.clear();
   discontinuity_.use();
   discontinuity_.set("stride", options_.stride);
   discontinuity_.set("threshold", options_.threshold_rad);
@@ -106,14 +102,14 @@ void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_
   coarse_direct_.bind(4);
   indirect_.bind_image(0, GL_WRITE_ONLY);
   direct_.bind_image(1, GL_WRITE_ONLY);
-  list_.bind_storage(0);
+  list_.bind(0);
   gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {8, 8, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 float VirtualLightGather::coarse_share() const {
   if (options_.stride == 1) return 0.0f;
-  const GLuint listed = list_.download<GLuint>(1, 3 * sizeof(GLuint)).front();
+  const GLuint listed = list_.count();
   return 1.0f - float(listed) / float(size_.x * size_.y);
 }
 

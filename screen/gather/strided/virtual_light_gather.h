@@ -7,6 +7,7 @@
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/virtual_light_list_gl.h"
+#include "screen/base/work_list.h"
 #include "screen/visibility/negative/negative_lights.h"
 
 namespace volgi::screen {
@@ -52,7 +53,7 @@ class VirtualLightGather {
   GatherOptions options_;
   glm::ivec2 size_;
   gl::Texture direct_, indirect_, coarse_direct_, coarse_indirect_;
-  gl::Buffer list_;  // WorkListHead of shaders/screen/base/work_list.glsl, then pixels
+  WorkList list_;  // WorkListHead of shaders/screen/base/work_list.glsl, then pixels
   std::array<std::array<std::optional<gl::Program>, 2>, 2> gather_;  // [listed][negative], made when first wanted
   gl::Program discontinuity_;
 };

@@ -3,19 +3,14 @@
 #include <algorithm>
 #include <numeric>
 
+#include "shaders/screen/lights/resample/resample.shared.h"
 #include "shaders/shared/virtual_light.shared.h"
 
 namespace volgi::screen {
 
-namespace {
-
-constexpr int kReceivers = 256;  // of shaders/screen/lights/resample/light_candidates.glsl, two vec4 each
-
-}  // namespace
-
 ResampleVirtualLights::ResampleVirtualLights(int candidates_per_light)
     : candidates_per_light_(candidates_per_light),
-      receivers_(size_t(kReceivers) * 8 * sizeof(float)),
+      receivers_(size_t(RESAMPLE_RECEIVERS) * RESAMPLE_FLOATS_PER_RECEIVER * sizeof(float)),
       receivers_program_(gl::Program::compute("screen/lights/resample/resample_receivers.comp.glsl")),
       weigh_(gl::Program::compute("screen/lights/resample/resample_weights.comp.glsl")),
       resample_(gl::Program::compute("screen/lights/resample/resample_virtual_lights.comp.glsl")),
@@ -43,7 +38,7 @@ void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuf
   ranges_.bind_storage(4);
   gbuffer.bind();
   receivers_program_.use();
-  gl::dispatch_linear(kReceivers, 64);
+  gl::dispatch_linear(RESAMPLE_RECEIVERS, 64);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   int first = 0;
   for (const int count : lights_.of_light) {

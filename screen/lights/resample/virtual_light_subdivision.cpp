@@ -8,7 +8,7 @@ VirtualLightSubdivision::VirtualLightSubdivision()
     : program_(gl::Program::compute("screen/lights/resample/virtual_light_subdivision.comp.glsl")) {}
 
 void VirtualLightSubdivision::run(const ReflectiveShadowMap& maps, const VirtualLights& candidates,
-                            const ResampleVirtualLights& chosen, gl::PassTimer& timer) {
+                                  const ResampleVirtualLights& chosen, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const VirtualLightListGl& lights = chosen.lights();
   gl::reserve(sublights_, padded_count(lights) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight));
@@ -35,7 +35,8 @@ void VirtualLightSubdivision::run(const ReflectiveShadowMap& maps, const Virtual
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void VirtualLightSubdivision::run_source(int light, int first, int count, bool along_curve, double measure, int candidates_per_light) {
+void VirtualLightSubdivision::run_source(int light, int first, int count, bool along_curve, double measure,
+                                         int candidates_per_light) {
   program_.set("light", light);
   program_.set("first", first);
   program_.set("count", count);

@@ -8,20 +8,22 @@
 
 namespace volgi::screen {
 
-/// Pass "screen/lights/resample/virtual_light_subdivision": subdivides what each resampled virtual light stands for, its range of Hilbert's curve through what its source sends: FINE_SUBLIGHTS new samples of the reflective shadow map at equal steps, and COARSE_SUBLIGHTS, the sums of four fine ones each. What is near a light is lit by these (NearLights).
-/// Sub-lights of emitters, and of lights that are sampled by flux, are the candidates in their range. Cost: as
-/// VirtualLights with so many lights.
+/// Pass "screen/lights/resample/virtual_light_subdivision": subdivides what each resampled virtual light stands for,
+/// its range of Hilbert's curve through what its source sends: FINE_SUBLIGHTS new samples of the reflective shadow map
+/// at equal steps, and COARSE_SUBLIGHTS, the sums of four fine ones each. What is near a light is lit by these
+/// (NearLights). Sub-lights of emitters, and of lights that are sampled by flux, are the candidates in their range.
+/// Cost: as VirtualLights with so many lights.
 class VirtualLightSubdivision {
  public:
   static constexpr const char* name = "screen/lights/resample/virtual_light_subdivision";
-  static constexpr const char* product_name = "parts of virtual lights";
+  static constexpr const char* product_name = "sub-lights of virtual lights";
   VirtualLightSubdivision();
 
   /// @param chosen  of `candidates`.
   void run(const ReflectiveShadowMap& maps, const VirtualLights& candidates, const ResampleVirtualLights& chosen,
            gl::PassTimer& timer);
 
-  const gl::Buffer& sublights() const { return sublights_; }            // shared::SubLight, SUBLIGHTS_PER_LIGHT for each light
+  const gl::Buffer& sublights() const { return sublights_; }  // shared::SubLight, SUBLIGHTS_PER_LIGHT for each light
   const gl::Buffer& near_lights() const { return near_lights_; }  // shared::NearLight of each light
   size_t bytes() const { return sublights_.bytes() + near_lights_.bytes(); }
 

@@ -1,13 +1,8 @@
 // Lists that the GPU makes and works off by an indirect dispatch.
 #ifndef VOLGI_WORK_LIST_GLSL
 #define VOLGI_WORK_LIST_GLSL
+#include "screen/base/work_list.shared.h"
 #include "shared/global_index.shared.h"
-
-// Beginning of a list: the arguments of the dispatch, {0, 1, 1} while it is empty, and the length.
-struct WorkListHead {
-  uint groups_x, groups_y, groups_z;
-  uint count;
-};
 
 // Appends one entry, at `slot`, and a group of threads for every `per_group` entries. A macro, because heads in
 // buffers cannot be handed to functions.

@@ -227,18 +227,18 @@ TEST(SideGather, StrideKeepsTheMean) {
   }
 }
 
-/// A light of a wall, and the four quarters and sixteen parts that make up the same square.
-VirtualLightsForSides square_in_pieces(float edge) {
+/// A light on the floor, and the four coarse and sixteen fine sub-lights that make up the same square.
+VirtualLightsForSides subdivided_square(float edge) {
   VirtualLightsForSides from;
-  const auto piece = [&](glm::vec2 middle, float part) {
+  const auto sublight = [&](glm::vec2 middle, float part) {
     return shared::SubLight{{middle.x, -1.0f, middle.y}, edge * edge * part, glm::vec3(part), packed({0, 1, 0})};
   };
   for (int k = 0; k < 20; ++k) {
     const int n = k < 4 ? 2 : 4, cell = k < 4 ? k : (k - 4) % 4 + 4 * ((k - 4) / 4);
-    // Parts of a quarter follow on one another.
+    // The fine ones of a coarse one follow on one another.
     const glm::ivec2 at = k < 4 ? glm::ivec2(k % 2, k / 2)
                                 : 2 * glm::ivec2((cell / 4) % 2, cell / 8) + glm::ivec2(cell % 2, (cell % 4) / 2);
-    from.pieces.push_back(piece((glm::vec2(at) + 0.5f) * (edge / float(n)) - 0.5f * edge, 1.0f / float(n * n)));
+    from.sublights.push_back(sublight((glm::vec2(at) + 0.5f) * (edge / float(n)) - 0.5f * edge, 1.0f / float(n * n)));
   }
   from.lights = {{{0.0f, -1.0f, 0.0f}, edge * edge, {0, 1, 0}, VIRTUAL_LIGHT_REFLECTED, glm::vec3(1.0f), 0}};
   from.reflected = 1;
@@ -247,13 +247,13 @@ VirtualLightsForSides square_in_pieces(float edge) {
 }
 
 // A square of the floor, and the wall that meets it: the exact irradiance is a sum over a fine raster of points.
-TEST(SideGather, SidesNearALightGetTheLightOfItsParts) {
+TEST(SideGather, SidesNearALightGetTheLightOfItsSubLights) {
   const Scene scene = closed_box();
   const EmbreeScene embree(scene);
   const VoxelGrid voxels = voxelize_cpu(scene, make_grid(scene, kPatches, glm::vec3(0.0f)));
-  const VirtualLightsForSides parts = square_in_pieces(1.9f);
-  VirtualLightsForSides whole = parts;
-  whole.pieces.clear();
+  const VirtualLightsForSides subdivision = subdivided_square(1.9f);
+  VirtualLightsForSides whole = subdivision;
+  whole.sublights.clear();
   const auto error = [&](const VirtualLightsForSides& from) {
     const std::vector<glm::vec4> found = side_gather(voxels, embree, from, 0, 1, 1);
     double squares = 0.0, mean = 0.0;
@@ -276,11 +276,11 @@ TEST(SideGather, SidesNearALightGetTheLightOfItsParts) {
     }
     return 100.0 * std::sqrt(squares * 256.0) / mean;
   };
-  const double by_parts = error(parts), by_light = error(whole);
-  RecordProperty("parts_percent", std::to_string(by_parts));
+  const double by_sublights = error(subdivision), by_light = error(whole);
+  RecordProperty("sublights_percent", std::to_string(by_sublights));
   RecordProperty("light_percent", std::to_string(by_light));
-  EXPECT_LT(by_parts, 0.5 * by_light);
-  EXPECT_LT(by_parts, 15.0);
+  EXPECT_LT(by_sublights, 0.5 * by_light);
+  EXPECT_LT(by_sublights, 15.0);
 }
 
 TEST(SideGather, SameOnAnyNumberOfThreads) {

@@ -1,8 +1,8 @@
 #version 450 core
-// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their parts light it. Lights come in the order of their area lights, so that
+// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their sub-lights light it. Lights come in the order of their area lights, so that
 // each one's shadow is looked up once.
-#define LIGHT_PIECES_BINDING 8
-#include "screen/lights/resample/light_parts.glsl"
+#define SUBLIGHTS_BINDING 8
+#include "screen/lights/resample/sublights.glsl"
 #include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "shared/side.shared.h"
@@ -21,7 +21,7 @@ layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
 layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
-uniform float zone;  // areas of a light near which its pieces light instead; 0: none
+uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
 
 void main() {
   uint s = global_index();
@@ -50,7 +50,7 @@ void main() {
     vec3 irradiance = l.flux * disk_to_point(visibility * share * cosines, squared, l.area_m2);
     if (share < 1.0)
       irradiance += visibility * (1.0 - share) *
-                    irradiance_of_parts(Receiver(position, side.normal, side.normal), int(index), zone);
+                    irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), zone);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
   }

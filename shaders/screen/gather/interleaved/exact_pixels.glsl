@@ -1,8 +1,9 @@
-// Bins of a histogram of positive floats: an eighth of an octave each, at any scale.
+// The bin of a pixel's error estimate.
 #ifndef VOLGI_EXACT_PIXELS_GLSL
 #define VOLGI_EXACT_PIXELS_GLSL
 
-#define ERROR_BINS 2048u  // screen/gather/interleaved/area_light_gather.cpp has the same
+#include "screen/gather/interleaved/exact_pixels.shared.h"
+
 uint error_bin(float error_estimate) { return floatBitsToUint(max(error_estimate, 0.0)) >> 20; }
 
 #endif

@@ -9,7 +9,7 @@ shared uint own[ERROR_BINS];
 
 void main() {
   uint me = gl_LocalInvocationIndex;
-  for (uint i = me; i < ERROR_BINS; i += 64u) own[i] = 0u;
+  for (uint i = me; i < uint(ERROR_BINS); i += 64u) own[i] = 0u;
   barrier();
   ivec2 size = imageSize(error_estimate);
   for (int row = 0; row < 64; ++row) {  // a tile of 64 x 64
@@ -17,7 +17,7 @@ void main() {
     if (all(lessThan(pixel, size))) atomicAdd(own[error_bin(imageLoad(error_estimate, pixel).r)], 1u);
   }
   barrier();
-  for (uint i = me; i < ERROR_BINS; i += 64u) {
+  for (uint i = me; i < uint(ERROR_BINS); i += 64u) {
     if (own[i] > 0u) atomicAdd(count[i], own[i]);
   }
 }

@@ -9,7 +9,7 @@ shared uint sums[64];
 
 void main() {
   uint me = gl_LocalInvocationIndex;
-  uint each = ERROR_BINS / 64u;
+  uint each = uint(ERROR_BINS) / 64u;
   uint sum = 0u;
   for (uint i = 0u; i < each; ++i) sum += count[me * each + i];
   sums[me] = sum;

@@ -1,7 +1,7 @@
 #version 450 core
 // Light of sub-lights on the pixels near them.
-#define LIGHT_PIECES_BINDING 3
-#include "screen/lights/resample/light_parts.glsl"
+#define SUBLIGHTS_BINDING 3
+#include "screen/lights/resample/sublights.glsl"
 #include "screen/base/gbuffer.glsl"
 #include "screen/gather/interleaved/near_lights.glsl"
 
@@ -18,7 +18,7 @@ vec3 irradiance_of_light(Receiver at, int i) {
   float share = 1.0 - far_share(disk_form(squared, light.area_m2), zone);
   bool behind = dot(way, at.geometric) <= -light.spread_m || -dot(way, light.normal) <= light.rise_m;
   if (share <= 0.0 || behind) return vec3(0.0);
-  return share * irradiance_of_parts(at, i, zone);
+  return share * irradiance_of_sublights(at, i, zone);
 }
 
 void main() {

@@ -1,16 +1,16 @@
 // Candidates of one source, and what they are worth to the picture.
 #ifndef VOLGI_LIGHT_CANDIDATES_GLSL
 #define VOLGI_LIGHT_CANDIDATES_GLSL
+#include "screen/lights/resample/resample.shared.h"
 #include "shared/virtual_light.shared.h"
 
-#define RECEIVERS 256
 
 struct Receiver {
   vec4 position;  // w = 0: none, the background
   vec4 normal;
 };
 layout(std430, binding = 0) readonly buffer Candidates { VirtualLight candidate_lights[]; };
-layout(std430, binding = 1) buffer Receivers { Receiver receivers[RECEIVERS]; };
+layout(std430, binding = 1) buffer Receivers { Receiver receivers[RESAMPLE_RECEIVERS]; };
 // (light sent to the receivers, flux) of a candidate, luminance; then both summed from the source's first on.
 layout(std430, binding = 2) buffer Weights { vec2 weights[]; };
 uniform int first_candidate;

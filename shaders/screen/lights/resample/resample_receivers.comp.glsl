@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 
 void main() {
   uint k = global_index();
-  if (k >= uint(RECEIVERS)) return;
+  if (k >= uint(RESAMPLE_RECEIVERS)) return;
   ivec2 pixel = halton_pixel(k, textureSize(position_map, 0));
   vec4 position = texelFetch(position_map, pixel, 0);
   position.w *= luminance(texelFetch(albedo_map, pixel, 0).rgb);

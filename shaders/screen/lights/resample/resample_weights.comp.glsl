@@ -14,7 +14,7 @@ void main() {
   float flux = luminance(l.flux);
   float sum = 0.0;
   if (flux > 0.0) {
-    for (int k = 0; k < RECEIVERS; ++k) {
+    for (int k = 0; k < RESAMPLE_RECEIVERS; ++k) {
       vec3 w = l.position - receivers[k].position.xyz;
       float squared = dot(w, w);
       float cosines = max(dot(w, receivers[k].normal.xyz), 0.0) * max(-dot(w, l.normal), 0.0);

@@ -4,7 +4,7 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-#define MAX_VIRTUAL_AREA_LIGHTS 1024      // one uniform block
+#define MAX_VIRTUAL_AREA_LIGHTS 1024       // one uniform block
 #define NO_VIRTUAL_AREA_LIGHT 0xffffffffu  // cluster of a virtual light without flux
 
 // std140 and std430, 64 bytes. A cluster without lights has light_count 0; its other members are of no use.

@@ -58,7 +58,7 @@ TEST_F(FrameVolumeGl, InjectionByMaxIsTheSameOnBoth) {
     glm::vec3 sent[2], left[2];
     for (const screen::Backend backend : {screen::Backend::gpu, screen::Backend::cpu}) {
       screen::FrameOptions o = options(Scheme::gaitatzes2010, backend);
-      o.volume.scheme.injection = SchemeOptions::Injection::max;
+      o.of<VolumeOptions>().scheme.injection = SchemeOptions::Injection::max;
       const BounceReport bounces = report(scene, o).bounces;
       sent[backend == screen::Backend::cpu] = bounces.sent;
       left[backend == screen::Backend::cpu] = bounces.left;
@@ -78,7 +78,7 @@ TEST_F(FrameVolumeGl, VoxelizationIsAsAskedFor) {
   for (const VoxelizationOptions asked :
        {VoxelizationOptions{.method = VoxelizationMethod::single_pass}, VoxelizationOptions{.interleave = true}}) {
     screen::FrameOptions o = options(Scheme::ordinates, screen::Backend::gpu);
-    o.volume.voxelization = asked;
+    o.of<VolumeOptions>().voxelization = asked;
     const screen::VolumeReport other = report(scene_, o);
     EXPECT_EQ(other.sides, sliced.sides);
     EXPECT_EQ(other.injected, sliced.injected);

@@ -1,0 +1,6 @@
+#ifndef VOLGI_EXACT_PIXELS_SHARED_H
+#define VOLGI_EXACT_PIXELS_SHARED_H
+
+#define ERROR_BINS 2048  // of a histogram of positive floats: an eighth of an octave each, at any scale
+
+#endif
