@@ -11,7 +11,7 @@ namespace volgi {
 /// Deterministic. Cost: Embree's tree and at most 3 OPENNESS_RAYS rays.
 double openness(const Scene& scene, std::span<const glm::vec3> from);
 inline constexpr int OPENNESS_RAYS = 512;  // from each point
-/// Below, cracks between triangles are meant: docs/conventions.md#sky.
+/// Less comes from cracks between triangles.
 inline constexpr double LEAST_OPENNESS = 0.005;
 
 /// Says once that the scene is open and has no sky, if it is: from where its camera stands and where its punctual

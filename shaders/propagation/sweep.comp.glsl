@@ -92,14 +92,12 @@ void carry_cell(ivec3 flow, inout vec4 x, inout vec4 y, inout vec4 z) {
 
 // Place of a face in its plane; nothing comes from outside the grid.
 ivec3 in_plane(int u, int v) { return ivec3(octant * 3 * QUADS + lane, u, v); }
-vec4 come_in(restrict image3D faces, int u, int v, bool inside) {
-  vec4 power = imageLoad(faces, in_plane(u, v));
-  return inside ? power : vec4(0.0);
-}
+// A macro, because a parameter of a function has no image format.
+#define COME_IN(faces, u, v, inside) ((inside) ? imageLoad(faces, in_plane(u, v)) : vec4(0.0))
 
 // Four cells along x. Indices are literal wherever registers are meant.
 void carry_row(ivec3 first, inout vec4 y[TILE], inout vec4 z[TILE * TILE]) {
-  vec4 x = come_in(x_faces, first.y, first.z, first.x > 0);
+  vec4 x = COME_IN(x_faces, first.y, first.z, first.x > 0);
   carry_cell(first, x, y[0], z[0]);
   carry_cell(first + ivec3(1, 0, 0), x, y[1], z[1]);
   carry_cell(first + ivec3(2, 0, 0), x, y[2], z[2]);
@@ -118,9 +116,9 @@ void turn_rows(inout vec4 z[TILE * TILE]) {
 void carry_tile(ivec3 first, int end_z) {
   vec4 through_y[TILE], through_z[TILE * TILE];  // what comes into the next cells [W]
   for (int i = 0; i < TILE * TILE; ++i)
-    through_z[i] = come_in(z_faces, first.x + i % TILE, first.y + i / TILE, first.z > 0);
+    through_z[i] = COME_IN(z_faces, first.x + i % TILE, first.y + i / TILE, first.z > 0);
   for (int z = first.z; z < end_z; ++z) {
-    for (int x = 0; x < TILE; ++x) through_y[x] = come_in(y_faces, first.x + x, z, first.y > 0);
+    for (int x = 0; x < TILE; ++x) through_y[x] = COME_IN(y_faces, first.x + x, z, first.y > 0);
     for (int y = 0; y < TILE; ++y) {
       carry_row(ivec3(first.x, first.y + y, z), through_y, through_z);
       turn_rows(through_z);

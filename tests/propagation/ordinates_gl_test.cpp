@@ -168,8 +168,10 @@ TEST_F(OrdinatesGlDispatches, AreAtMostHalfTheCellsOfAnEdge) {
   }
 }
 
+class OrdinatesGlOptions : public GlTest {};
+
 // What goes with the grid (choose_ordinates), or what is asked for.
-TEST(OrdinatesGlOptions, AreChosen) {
+TEST_F(OrdinatesGlOptions, AreChosen) {
   SchemeOptions options;
   options.directions = 7;
   EXPECT_THROW(OrdinatesTransportGl(unit_grid(4), options), Error);
