@@ -14,11 +14,12 @@ namespace {
 
 constexpr int kFine = 3;  // lines to a cell, on an edge
 
-/// The faces across one axis, one bit each.
+/// The faces across one axis. A surface that goes on meets some lines to the side of the face that the line between the
+/// centres meets: those faces are no sides' (coverage counts paths that come free to the face), but what is too small
+/// for such a line has no other.
 class FaceMarks {
  public:
-  FaceMarks(const Grid& grid, int axis)
-      : grid_(grid), axis_(axis), marked_(size_t(shared::face_count(grid, axis)), false) {}
+  FaceMarks(const Grid& grid, int axis) : grid_(grid), axis_(axis), met_(size_t(shared::face_count(grid, axis)), 0) {}
 
   /// All lines of the family that meet the triangle (cell coordinates).
   void mark(const std::array<glm::dvec3, 3>& t) {
@@ -35,16 +36,17 @@ class FaceMarks {
       for (int i = from; i <= to; ++i) {
         const double at_b = (i + 0.5) / kFine;
         const double depth = t[0][axis_] - (n[b] * (at_b - t[0][b]) + n[c] * (at_c - t[0][c])) / n[axis_];
-        mark_face(i / kFine, j / kFine, depth);
+        mark_face(i, j, depth);
       }
     }
   }
   /// @param blocks  with sides, by block_index: those of the marked faces' cells become true.
   void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
-    for (int face = 0; face < int(marked_.size()); ++face) {
-      if (!marked_[size_t(face)]) continue;
+    for (int face = 0; face < int(met_.size()); ++face) {
+      if (met_[size_t(face)] == 0) continue;
       ++sum.faces;
       glm::ivec3 cell = shared::face_coord(grid_, axis_, face);
+      if (met_[size_t(face)] != CENTRE && beside_a_centre(cell)) continue;
       for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
         if (!shared::cell_inside(grid_, cell)) continue;
         ++sum.sides;
@@ -78,19 +80,36 @@ class FaceMarks {
     }
     return range;
   }
-  void mark_face(int cell_b, int cell_c, double depth) {
+  /// @param line_b, line_c  of the fine lattice.
+  void mark_face(int line_b, int line_c, double depth) {
     const double face = std::floor(depth + 0.5);  // between the centres of cells face - 1 and face
     if (face < 0.0 || face > grid_.cells[axis_]) return;
     glm::ivec3 place;
     place[axis_] = int(face);
-    place[shared::axis_b(axis_)] = cell_b;
-    place[shared::axis_c(axis_)] = cell_c;
-    marked_[size_t(shared::face_index(grid_, axis_, place))] = true;
+    place[shared::axis_b(axis_)] = line_b / kFine;
+    place[shared::axis_c(axis_)] = line_c / kFine;
+    char& met = met_[size_t(shared::face_index(grid_, axis_, place))];
+    met = std::max(met, line_b % kFine == kFine / 2 && line_c % kFine == kFine / 2 ? CENTRE : ASIDE);
+  }
+  /// Whether the line between centres meets a surface at this face's place one face on or back, or beside it.
+  bool beside_a_centre(glm::ivec3 place) const {
+    const int b = shared::axis_b(axis_), c = shared::axis_c(axis_);
+    for (int k = 0; k < 27; ++k) {
+      glm::ivec3 at = place;
+      at[b] += k % 3 - 1;
+      at[c] += k / 3 % 3 - 1;
+      at[axis_] += k / 9 - 1;
+      const bool inside = at[b] >= 0 && at[b] < grid_.cells[b] && at[c] >= 0 && at[c] < grid_.cells[c] &&
+                          at[axis_] >= 0 && at[axis_] <= grid_.cells[axis_];
+      if (inside && met_[size_t(shared::face_index(grid_, axis_, at))] == CENTRE) return true;
+    }
+    return false;
   }
 
   const Grid& grid_;
   int axis_;
-  std::vector<bool> marked_;
+  static constexpr char ASIDE = 1, CENTRE = 2;  // by which lines
+  std::vector<char> met_;
 };
 
 }  // namespace
