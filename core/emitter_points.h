@@ -26,7 +26,8 @@ class EmitterPoints {
   /// Power leaving all emissive surfaces [W]: pi times the integral of emitted radiance, times alpha.
   glm::dvec3 flux() const { return flux_; }
   /// `count` points, the same ones every time: strata of equal power, Halton points in each triangle. Without
-  /// textures the luminance of their flux sums to that of flux() exactly, else as well as that many points sample a texture.
+  /// textures the luminance of their flux sums to that of flux() exactly, else as well as that many points sample a
+  /// texture.
   std::vector<EmitterPoint> points(int count) const;
 
  private:

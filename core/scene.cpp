@@ -18,7 +18,7 @@
 namespace volgi {
 namespace {
 
-constexpr double farthest_m = 1e12;                  // squares and cubes of it are still floats
+constexpr double farthest_m = 1e12;                 // squares and cubes of it are still floats
 constexpr size_t max_vertices = size_t(100) << 20;  // of all nodes together
 
 WorldBox triangle_bounds(const std::vector<gltf::PlacedMesh>& meshes) {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kFormat = "volgi virtual lights 1";
 constexpr size_t kMaxLights = size_t{1} << 22;  // 200 MB of them; a renderer's list has thousands
-constexpr double kUnitTolerance = 1e-4;          // of a normal's length: a float's rounding is 1e-7, a half's 5e-4
+constexpr double kUnitTolerance = 1e-4;         // of a normal's length: a float's rounding is 1e-7, a half's 5e-4
 constexpr std::array<const char*, 3> kKinds = {"reflected", "emitted", "negative"};  // VIRTUAL_LIGHT_*
 
 enum Field { kind, source, position, normal, flux, area, field_count };

@@ -56,8 +56,8 @@ struct BounceRules {
   bool conjugate_gradients(bool linear) const;
   /// Whether the last run's answer may be the start.
   bool continues() const { return passes_per_run || (warm_start && !bounces && !iterations); }
-  /// Amortised, with emission: one order in a number of them renews its first arrival, the others carry bounces. Once a run
-  /// where an order is one pass.
+  /// Amortised, with emission: one order in a number of them renews its first arrival, the others carry bounces. Once a
+  /// run where an order is one pass.
   int arrival_cycle(bool iterative) const;
 };
 

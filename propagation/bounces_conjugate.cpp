@@ -52,7 +52,8 @@ glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
 void Bounces::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const size_t count = source_.size();
-  const int limit = std::min(rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
+  const int limit =
+      std::min(rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
   Powers& p = received_indirect_;
   report.conjugate_gradients = true;
 

@@ -186,7 +186,8 @@ void BouncesGl::renewals(const Run& run, BounceReport& report) {
 }
 
 void BouncesGl::solve_conjugate(const Run& run, BounceReport& report) {
-  const int limit = std::min(run.rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
+  const int limit =
+      std::min(run.rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
   report.conjugate_gradients = true;
   if (run.has_emission) arrival_of_emission(run, report);
   solver_->set_source(run.voxels, powers(), run.flux.punctual());

@@ -49,7 +49,8 @@ struct OrdinateChoice {
 };
 /// Directions and rule as requested, else those that suit the grid: refining the grid at fixed directions makes the
 /// answer worse, and sharper transfer shows few directions (docs/theory.md#ordinates). The step rule and 24 directions
-/// up to 16 cells; then characteristic, with 48 directions up to 32 cells and 128 above. Where only one of the two is requested, the other follows: characteristic with 48 directions or more, step with fewer.
+/// up to 16 cells; then characteristic, with 48 directions up to 32 cells and 128 above. Where only one of the two is
+/// requested, the other follows: characteristic with 48 directions or more, step with fewer.
 OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options);
 
 /// The number of directions that suits a grid, where none is requested.

@@ -69,7 +69,8 @@ void SweepRadianceGl::list_diagonals() {
   const int height = int(columns.size() / kColumnsPerRow) + 1;
   columns.resize(size_t(height) * kColumnsPerRow);
   column_map_ = gl::Texture::make_2d(GL_R32UI, kColumnsPerRow, height);
-  glTextureSubImage2D(column_map_.id(), 0, 0, 0, kColumnsPerRow, height, GL_RED_INTEGER, GL_UNSIGNED_INT, columns.data());
+  glTextureSubImage2D(column_map_.id(), 0, 0, 0, kColumnsPerRow, height, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                      columns.data());
 }
 
 RadianceVolumeGl SweepRadianceGl::run(const gl::Texture& cell_word, const gl::Texture& side_light) {

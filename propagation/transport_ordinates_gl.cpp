@@ -8,11 +8,11 @@ namespace volgi {
 
 namespace {
 
-constexpr int kSidesPerRow = 1024;   // side_texel.glsl
-constexpr int kArrivedARow = 256;  // side_texel.glsl
-constexpr int kOctantsOfSide = 4;  // that can reach it
-constexpr int kBlocksARow = 1024;  // sweep.comp.glsl
-constexpr int kBlock = 8;          // sweep.comp.glsl: cells on an edge
+constexpr int kSidesPerRow = 1024;  // side_texel.glsl
+constexpr int kArrivedARow = 256;   // side_texel.glsl
+constexpr int kOctantsOfSide = 4;   // that can reach it
+constexpr int kBlocksARow = 1024;   // sweep.comp.glsl
+constexpr int kBlock = 8;           // sweep.comp.glsl: cells on an edge
 
 int rows(size_t count, int per_row) { return std::max(1, int((count + size_t(per_row) - 1) / size_t(per_row))); }
 

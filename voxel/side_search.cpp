@@ -23,9 +23,9 @@ constexpr std::array<std::uint8_t, 32> kBitCount = [] {
 }();
 
 constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
-constexpr float kOneLayer = 0.02f;           // cells: layers nearer than this count as one
-constexpr float kFarthest = 3.0f;            // cells along the axis
-constexpr float kMinShare = 1e-3f;         // of the normal along an axis that is asked
+constexpr float kOneLayer = 0.02f;                   // cells: layers nearer than this count as one
+constexpr float kFarthest = 3.0f;                    // cells along the axis
+constexpr float kMinShare = 1e-3f;                   // of the normal along an axis that is asked
 
 /// Whether a depth on the axis is farther than that from all points of a cell.
 bool farther(float low, float depth) { return !(std::max(low - depth, depth - (low + 1.0f)) <= kFarthest); }

@@ -139,7 +139,7 @@ class SideSearch {
   glm::vec3 normals_[2];
   int fronts_[2];
   int ways_;
-  int searched_axes_ = 0;       // bits
+  int searched_axes_ = 0;    // bits
   glm::vec3 weights_{0.0f};  // where all of them find a side
   Axis axes_[3];
 };

@@ -10,8 +10,8 @@ enum class VoxelizationMethod { sliced, single_pass };
 struct VoxelizationOptions {
   VoxelizationMethod method = VoxelizationMethod::sliced;
   /// Every run slices along one axis only, x, y and z in turn, and keeps what earlier runs have found along the others
-  /// (Gaitatzes 2010, section 5.1), the areas of their sides included: what moves lags by up to two runs. Three runs of a
-  /// scene at rest find the sides that a full one does; their areas, which are shared out among the sides that there
+  /// (Gaitatzes 2010, section 5.1), the areas of their sides included: what moves lags by up to two runs. Three runs of
+  /// a scene at rest find the sides that a full one does; their areas, which are shared out among the sides that there
   /// are, take three more. The first run is a full one. Not with single_pass.
   bool interleave = false;
 };

@@ -12,7 +12,7 @@ struct AgainstPathTracingOptions {
   int size = 512;  // pixels on each side
   int frames = 5;  // of hybrid, measured before the path tracer and as many after it
   int reference_spp = 1024;
-  int max_spp = 4096;          // where the path tracer gives up
+  int max_spp = 4096;           // where the path tracer gives up
   std::filesystem::path cache;  // folder of cached_reference()
 };
 

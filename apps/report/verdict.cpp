@@ -87,7 +87,8 @@ std::string finding_of(const Json& metrics) {
         "wrong by a constant factor: {:.2f} times the light; without it {:.1f} % error instead of {:.1f}", factor, left,
         error);
   }
-  if (ratio > kMaxEnergyFactor || ratio < 1.0 / kMaxEnergyFactor) return fmt::format("{:.2f} times the reference's light", ratio);
+  if (ratio > kMaxEnergyFactor || ratio < 1.0 / kMaxEnergyFactor)
+    return fmt::format("{:.2f} times the reference's light", ratio);
   return "";
 }
 

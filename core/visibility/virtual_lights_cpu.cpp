@@ -24,7 +24,7 @@ namespace {
 using shared::VirtualLight;
 
 constexpr float kMinCosine = 0.05f;  // docs/conventions.md#virtual-lights
-constexpr int kAnyResolution = 256;    // of a sun's layer: the margin that it makes is taken off again
+constexpr int kAnyResolution = 256;  // of a sun's layer: the margin that it makes is taken off again
 
 /// A part of what a punctual light sends.
 struct LightRay {

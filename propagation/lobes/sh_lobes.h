@@ -45,7 +45,8 @@ class LobeVolume {
 
   /// These leaves and no others, their lobes unset; a leaf that there was keeps its memory. @param numbers  ascending.
   void assign(std::vector<int> numbers);
-  /// Of a leaf that there is: rows (LeafLight) in which its memory may hold anything but zeros. All rows, unless the writer of the leaf says which.
+  /// Of a leaf that there is: rows (LeafLight) in which its memory may hold anything but zeros. All rows, unless the
+  /// writer of the leaf says which.
   std::uint64_t& rows_written(int number) { return rows_written_[size_t(slot_of_[size_t(number)])]; }
   /// Leaves dropped (as flags over leaves()) read as zeros from now on.
   void drop(std::span<const char> dropped);

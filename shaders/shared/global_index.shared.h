@@ -9,7 +9,7 @@
 #ifndef __cplusplus
 uint group_index() { return gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x; }
 // A macro, because the size of a group is known only behind its layout.
-#define global_index()                                                                              \
+#define global_index() \
   (group_index() * (gl_WorkGroupSize.x * gl_WorkGroupSize.y * gl_WorkGroupSize.z) + gl_LocalInvocationIndex)
 #endif
 

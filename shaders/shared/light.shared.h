@@ -25,8 +25,8 @@ struct PunctualLight {
 static_assert(sizeof(PunctualLight) == 64 && offsetof(PunctualLight, intensity) == 32);
 #endif
 
-// Share of the on-axis intensity that a spot sends along `from_light` (unit). Cosines within a narrow cone are alike but
-// for their last digits (1 % of the light of a quarter of a degree): there 1 - cos is half the chord squared.
+// Share of the on-axis intensity that a spot sends along `from_light` (unit). Cosines within a narrow cone are alike
+// but for their last digits (1 % of the light of a quarter of a degree): there 1 - cos is half the chord squared.
 #define SPOT_NARROW 1e-3f  // 1 - cos of 2.6 degrees
 SHARED_FUNCTION float spot_falloff(PunctualLight light, vec3 from_light) {
   float t = dot(light.direction, from_light) * light.spot_scale + light.spot_offset;

@@ -4,7 +4,8 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-// A virtual light is four coarse sub-lights, each of them four fine ones: neighbours on the curve of its source's samples.
+// A virtual light is four coarse sub-lights, each of them four fine ones: neighbours on the curve of its source's
+// samples.
 #define COARSE_SUBLIGHTS 4
 #define FINE_SUBLIGHTS 16
 #define SUBLIGHTS_PER_LIGHT (COARSE_SUBLIGHTS + FINE_SUBLIGHTS)  // coarse ones first

@@ -224,7 +224,8 @@ TEST_F(FirstBounce, ConvexRoomAgainstPaths) {
       const auto relative = against(reference, picture(scene, o)).relative.value();
       error[more] = relative.rmse_pct_denoised.value();
       record("convex_one_of_" + std::to_string(candidates_per_light) + (more == 0 ? "_1024" : "_4096"), error[more]);
-      record("convex_one_of_" + std::to_string(candidates_per_light) + (more == 0 ? "_1024" : "_4096") + "_energy", relative.ratio);
+      record("convex_one_of_" + std::to_string(candidates_per_light) + (more == 0 ? "_1024" : "_4096") + "_energy",
+             relative.ratio);
       EXPECT_NEAR(relative.ratio, 1.0, 0.03) << candidates_per_light;
       EXPECT_LT(error[more], more == 0 ? 10.0 : 6.0) << candidates_per_light;
     }

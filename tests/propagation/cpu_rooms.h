@@ -100,8 +100,7 @@ class PulseTransport : public MatrixTransport {
     at_start_ = in_flight_ = glm::vec3(sum(sent_));
     for (glm::vec4& power : sent_) power *= 0.5f;
   }
-  bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules,
-               BounceReport& report) override {
+  bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override {
     for (int pass = 0; pass < max_passes; ++pass) {
       MatrixTransport::advance(received, 1, rules, report);
       for (glm::vec4& power : sent_) power *= 0.5f;

@@ -104,8 +104,8 @@ TEST_P(PulseGl, InjectsTheLargestRadiosityOfACell) {
   const Radiance sh = run(v, o, {glm::vec4(0.0f)}, 1, &report);
   EXPECT_NEAR(report.sent.x, 8.0f * 0.25f, 1e-6f);
   EXPECT_NEAR(report.sent.y, 4.0f * 0.25f, 1e-6f);
-  // The 90-degree cone, c = cos 45 degrees: half the lobe's isotropic part 1 - c, and of P_1 and P_2 what docs/theory.md
-  // says.
+  // The 90-degree cone, c = cos 45 degrees: half the lobe's isotropic part 1 - c, and of P_1 and P_2 what
+  // docs/theory.md says.
   const double c = std::sqrt(0.5), share_0 = 0.5 * (1.0 - c);
   const double share_1 = 3.0 * (2.0 / 3.0) * 0.25 * (1.0 - c * c);
   const double share_2 = GetParam() == 2 ? 5.0 * 0.25 * 0.25 * c * (1.0 - c * c) : 0.0;

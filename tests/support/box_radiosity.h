@@ -177,8 +177,8 @@ struct BoxSides {
         side.depth = float((face & 1) != 0 ? cells : 0);
         side.front = 1;
         sides.push_back(side);
-        patch_of.push_back(
-            radiosity.index(face, c[shared::axis_b(axis)] / cells_per_patch, c[shared::axis_c(axis)] / cells_per_patch));
+        patch_of.push_back(radiosity.index(face, c[shared::axis_b(axis)] / cells_per_patch,
+                                           c[shared::axis_c(axis)] / cells_per_patch));
       }
     }
   }

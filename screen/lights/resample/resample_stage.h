@@ -8,9 +8,9 @@ struct ResampleOptions {
   float near_zone = 4.0f;  // areas of a virtual light within which its sub-lights light (NearLights); 0: none
 };
 
-/// Virtual lights chosen from candidates by what they send to the picture (resample_virtual_lights.h), and, where a later
-/// stage takes them, the parts that each consists of (virtual_light_subdivision.h). Makes VirtualLightListGl anew, and
-/// VirtualLightSubdivision.
+/// Virtual lights chosen from candidates by what they send to the picture (resample_virtual_lights.h), and, where a
+/// later stage takes them, the parts that each consists of (virtual_light_subdivision.h). Makes VirtualLightListGl
+/// anew, and VirtualLightSubdivision.
 extern const StageType RESAMPLED_LIGHTS;
 
 /// Whether lights can be had in parts with these options: they are pieces of a curve through candidates.

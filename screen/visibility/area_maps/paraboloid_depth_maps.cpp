@@ -12,7 +12,7 @@ namespace {
 constexpr GLuint kTileCapacity = 1u << 19;
 constexpr size_t kHeadBytes = 2 * sizeof(GLuint);
 constexpr size_t kTileBytes = 2 * sizeof(GLuint);
-constexpr GLuint kTileGroups = 1024;              // share out the tiles; enough to fill a GPU
+constexpr GLuint kTileGroups = 1024;                // share out the tiles; enough to fill a GPU
 constexpr GLsizei kTrianglesPerDispatch = 1 << 21;  // GL promises 65535 groups, of 64 triangles
 
 }  // namespace

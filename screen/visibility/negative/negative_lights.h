@@ -17,9 +17,9 @@ namespace volgi::screen {
 
 struct NegativeLightOptions {
   int count = 256;  // up to MAX_NEGATIVE_LIGHTS
-  /// Where negative lights are placed, and their lobes. cochran2007: on pixels of a Halton sequence over the screen, a cosine lobe
-  /// around the mean direction of the light that passes. screen, sides: on pixels, or on sides of the volume, chosen by
-  /// the flux that passes through them, with a lobe as narrow as that light is.
+  /// Where negative lights are placed, and their lobes. cochran2007: on pixels of a Halton sequence over the screen, a
+  /// cosine lobe around the mean direction of the light that passes. screen, sides: on pixels, or on sides of the
+  /// volume, chosen by the flux that passes through them, with a lobe as narrow as that light is.
   enum class Method { cochran2007, screen, sides } method = Method::sides;
 };
 

@@ -33,6 +33,7 @@ TEST_P(SteadyFrame, MakesNoObjects) {
   options.of<screen::NegativeLightOptions>().count = 16;
   options.of<screen::VirtualAreaLightOptions>().count = 16;
   options.of<screen::AreaMapOptions>().texels = 32;
+  options.bounces = 2;
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context().software(), false);
   const auto made_in_next_frame = [&] {

@@ -248,5 +248,24 @@ TEST_F(VirtualLightGatherTest, LightsAtThePixelItselfAreHarmless) {
   }
 }
 
+/// Blocks without a buffer are undefined to read, even where the program reads none of their lights.
+TEST_F(VirtualLightGatherTest, DeclaresNoBlockThatIsNotBound) {
+  const Scene scene = floor_scene(glm::vec3(0.5f));
+  Seen seen(context(), scene, above(scene), glm::ivec2(8));
+  for (GLuint binding = 0; binding < 4; ++binding) glBindBufferBase(GL_UNIFORM_BUFFER, binding, 0);
+  const VirtualLightListGl lights = list_of({light_at({0, 1, 0}, {0, -1, 0})});
+  gathered(seen, lights, every_pixel());
+  GLint program = 0, blocks = 0;
+  glGetIntegerv(GL_CURRENT_PROGRAM, &program);
+  glGetProgramiv(GLuint(program), GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+  ASSERT_GT(blocks, 0);
+  for (GLint block = 0; block < blocks; ++block) {
+    GLint binding = 0, buffer = 0;
+    glGetActiveUniformBlockiv(GLuint(program), GLuint(block), GL_UNIFORM_BLOCK_BINDING, &binding);
+    glGetIntegeri_v(GL_UNIFORM_BUFFER_BINDING, GLuint(binding), &buffer);
+    EXPECT_NE(buffer, 0) << "block " << block << " at binding " << binding;
+  }
+}
+
 }  // namespace
 }  // namespace volgi::test

@@ -291,7 +291,8 @@ class Drift {
       if (before_[k].light_count == 0 || area_lights[k].light_count == 0) continue;
       double smallest = 1e30;
       for (const VirtualAreaLight& b : before_) {
-        if (b.light_count > 0) smallest = std::min(smallest, double(glm::distance(b.position, area_lights[k].position)));
+        if (b.light_count > 0)
+          smallest = std::min(smallest, double(glm::distance(b.position, area_lights[k].position)));
       }
       nearest_ += smallest;
       same_ += double(glm::distance(before_[k].position, area_lights[k].position));
