@@ -164,11 +164,11 @@ int RenderCommand::run() const {
   const SceneSource source(scene.scene_path);
   const WorldBox box = box_of(source, times);
   Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
-  // Says so now if there is none.
-  warn_of_open_scene(loaded, glm::vec3(scene.camera(loaded).world_from_camera[3]));
+  const Camera camera = scene.camera(loaded);  // says so now if there is none
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   screen::Frame picture(loaded, options);
+  warn_of_open_scene(loaded, glm::vec3(camera.world_from_camera[3]));
   for (const std::string& line : picture.announcements()) {
     if (!quiet) fmt::print("{}\n", line);
   }

@@ -23,12 +23,14 @@ bool has(const std::vector<Product>& products, const Product& p) {
   return std::find(products.begin(), products.end(), p) != products.end();
 }
 
-std::vector<Candidate> active_stages(const Recipe& recipe, const FrameOptions& options) {
+/// @param lacks  of all of them, active or not.
+std::vector<Candidate> active_stages(const Recipe& recipe, const FrameOptions& options, LightPaths& lacks) {
   std::vector<Candidate> stages;
   for (const StageType* type : recipe.stages) {
     if (!stages.empty() && type->slot < stages.back().type->slot)
       refuse(recipe, fmt::format("stage {} stands behind one of a later slot", type->name));
     StageRole role = type->role(options);
+    lacks = lacks | role.lacks;
     if (role.active) stages.push_back({type, std::move(role)});
   }
   return stages;
@@ -123,9 +125,10 @@ LightPaths paths_in(const Scene& scene) {
 
 Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths present) {
   const LightPaths asked = asked_paths(options.light, options.bounces) & present;
-  const std::vector<Candidate> stages = active_stages(recipe, options);
+  LightPaths lacks;
+  const std::vector<Candidate> stages = active_stages(recipe, options, lacks);
   Plan plan;
-  plan.wanted = asked & (recipe.claims | BASE_PATHS);
+  plan.wanted = (asked & (recipe.claims | BASE_PATHS)) - lacks;
   plan.missing = asked - plan.wanted;
   check_needs(recipe, stages);
   check_paths(recipe, stages, plan.wanted);

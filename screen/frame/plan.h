@@ -18,7 +18,7 @@ struct Plan {
   };
   std::vector<Step> steps;
   LightPaths wanted;   // asked for, in the scene, and claimed by the recipe
-  LightPaths missing;  // asked for and in the scene, but not claimed
+  LightPaths missing;  // asked for and in the scene, but not claimed, or lacking with these options
 };
 
 /// Paths that there can be in a scene: of punctual lights, of emissive surfaces; none without triangles.

@@ -112,13 +112,14 @@ std::vector<const Parameter*> parameters() {
   return all;
 }
 
-const Parameter& find_parameter(const std::string& name) {
+const Parameter& find_parameter(const std::string& name, const std::string& shown_as) {
   std::vector<std::string> known;
   for (const Parameter* p : parameters()) {
     if (name == p->name) return *p;
     known.emplace_back(p->name);
   }
-  throw Error(ExitCode::usage, fmt::format("--set {}: no such parameter; there are {}", name, fmt::join(known, ", ")));
+  throw Error(ExitCode::usage, fmt::format("--set {}: no such parameter; there are {}",
+                                           shown_as.empty() ? name : shown_as, fmt::join(known, ", ")));
 }
 
 void set_parameter(TypeMap& settings, const std::string& text) {
@@ -126,7 +127,7 @@ void set_parameter(TypeMap& settings, const std::string& text) {
   if (equals == std::string::npos) {
     throw Error(ExitCode::usage, fmt::format("--set {}: give NAME=VALUE, such as grid.shift=0.25", text));
   }
-  const Parameter& p = find_parameter(text.substr(0, equals));
+  const Parameter& p = find_parameter(text.substr(0, equals), text);
   p.set(settings, parse_value(p, text.substr(equals + 1), "--set " + text));
 }
 

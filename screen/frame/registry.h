@@ -26,7 +26,8 @@ void apply_recipe(const std::string& name, FrameOptions& options);
 /// Those of every picture, then those of techniques; each name once.
 std::vector<const Parameter*> parameters();
 /// @throws Error(usage) for a name that there is not, naming those that there are.
-const Parameter& find_parameter(const std::string& name);
+/// @param shown_as  what messages name; empty: the name.
+const Parameter& find_parameter(const std::string& name, const std::string& shown_as = {});
 /// NAME=VALUE, as --set takes it. @throws Error(usage) naming the text.
 void set_parameter(TypeMap& settings, const std::string& text);
 

@@ -29,6 +29,7 @@ struct StageRole {
     LightShare share = LightShare::whole;
   };
   std::vector<Light> adds = {};
+  LightPaths lacks = {};  // what it carries otherwise, but cannot with these options: warned about, not refused
 };
 
 /// What a stage is made for.

@@ -27,6 +27,7 @@ class Long : public GlTest {
     o.recipe = "volume";
     o.size = {24, 24};
     o.of<VolumeOptions>() = volume;
+    o.bounces = volume.bounces;
     o.of<VolumeOptions>().grid_cells = 12;
     const Camera camera =
         look_at_camera({0.3f, 0.2f, 0.7f}, {-0.4f, -0.3f, -1.0f}, 1.2f, scene.bounds_min, scene.bounds_max);

@@ -80,7 +80,8 @@ StageRole role_alone(const FrameOptions& options) {
   bounce_rules(o, 0.5f);
   // The papers' volumes do not know which of their light is direct.
   const bool mixes = !carries_sides(o.scheme.scheme);
-  if (mixes && !asked_paths(options.light, options.bounces).meets(INDIRECT_PATHS)) return {.active = false};
+  if (mixes && !asked_paths(options.light, options.bounces).meets(INDIRECT_PATHS))
+    return {.active = false, .lacks = {emission_direct}};
   return {.adds = {{LightPaths::all() - LightPaths{emission_seen, punctual_direct}}}};
 }
 

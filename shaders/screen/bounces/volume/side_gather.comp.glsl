@@ -49,7 +49,7 @@ void main() {
     }
     vec3 irradiance = l.flux * disk_to_point(visibility * share * cosines, squared, l.area_m2);
     if (share < 1.0)
-      irradiance += visibility * (1.0 - share) *
+      irradiance += (1.0 - share) *  // nothing hides what is so near, as for pixels
                     irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), zone);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
