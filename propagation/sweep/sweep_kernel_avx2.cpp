@@ -1,5 +1,5 @@
 #define VOLGI_SWEEP_WIDE 0
-#include "propagation/sweep/sweep_kernel_body.h"
+#include "propagation/sweep/sweep_kernel_body_internal.h"
 
 namespace volgi::sweep {
 

@@ -2,7 +2,7 @@
 // 16 floats. No include guard, no inline functions with external names: what is compiled for one instruction set must
 // not end up in code for another. Vectors are those of GCC and Clang (vector_size), so that all variants are one text.
 #define VOLGI_INLINE inline __attribute__((always_inline))
-#include "propagation/sweep/sweep_lanes.h"
+#include "propagation/sweep/sweep_lanes_internal.h"
 
 namespace volgi::sweep {
 namespace {
