@@ -36,9 +36,9 @@ struct BlockSides {
   std::uint32_t first_side;           // of the block, in block order
 };
 
-/// One block and octant. Inflow and outflow share memory: a row of 8 x lanes floats (Rows of sweep_kernel_body_internal.h) for
-/// each of 8 rows of a face. The step kernel carries the power of the last cell, the characteristic one the power
-/// through the face. (i,j,k) are cells along the flow.
+/// One block and octant. Inflow and outflow share memory: a row of 8 x lanes floats (Rows of
+/// sweep_kernel_body_internal.h) for each of 8 rows of a face. The step kernel carries the power of the last cell, the
+/// characteristic one the power through the face. (i,j,k) are cells along the flow.
 struct Block {
   float* x;  // row k, cell j
   float* y;  // row k, cell i

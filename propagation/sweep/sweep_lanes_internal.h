@@ -1,4 +1,5 @@
-// Vectors of lanes (Constants), and how a side's power goes into them and out again. Part of sweep_kernel_body_internal.h.
+// Vectors of lanes (Constants), and how a side's power goes into them and out again. Part of
+// sweep_kernel_body_internal.h.
 #include "propagation/sweep/sweep_kernel.h"
 
 namespace volgi::sweep {
