@@ -6,9 +6,9 @@
 namespace volgi {
 
 /// The kernels over sides that solve P = K(e + fP) between applications of K, by conjugate gradients or one bounce
-/// after another: the equations are those of bounces.h. Everything that they decide stays on the GPU, but for whether
-/// it is enough: push_sums() asks for that, pop_sums() brings it by when later work is queued. Sums have a fixed order.
-/// Memory: 32 bytes a side.
+/// after another: the equations are those of bounces_cpu.h. Everything that they decide stays on the GPU, but for
+/// whether it is enough: push_sums() asks for that, pop_sums() brings it by when later work is queued. Sums have a
+/// fixed order. Memory: 32 bytes a side.
 class BounceSolverGl {
  public:
   /// Power per side [W], vec4, rgb.

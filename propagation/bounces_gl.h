@@ -13,7 +13,7 @@
 namespace volgi {
 
 /// Applies a transport operator on the GPU: order by order, where order k sends what sides return of order k-1, or to
-/// all orders at once by conjugate gradients (docs/theory.md#orders; the equations are in bounces.h). Timer
+/// all orders at once by conjugate gradients (docs/theory.md#orders; the equations are in bounces_cpu.h). Timer
 /// "propagation/propagate". Whether a pass was the last is seen while the next one is under way, which then does not
 /// count: the GPU never waits for the host, and the result does not depend on timing. The last run's answer is kept,
 /// and is where the next one starts where the rules say so.

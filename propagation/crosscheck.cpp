@@ -9,9 +9,9 @@
 #include "core/gl/context.h"
 #include "core/surface.h"
 #include "core/visibility/light_flux.h"
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "propagation/bounces_gl.h"
-#include "propagation/pulse_volume.h"
+#include "propagation/pulse_volume_cpu.h"
 #include "propagation/pulse_volume_gl.h"
 #include "propagation/side_irradiance_gl.h"
 #include "propagation/transport_conservative_gl.h"
@@ -270,7 +270,7 @@ class Stages {
     }
     bounces_gl_ = std::make_unique<BouncesGl>(make_transport_gl(voxels().grid(), scheme_));
     bounces_gl_->run(on_gpu, flux_gl_, true, rules, gpu_.timer);
-    bounces_ = std::make_unique<Bounces>(make_transport(voxels(), scheme_));
+    bounces_ = std::make_unique<BouncesCpu>(make_transport(voxels(), scheme_));
     bounces_->run(voxels(), flux_, true, rules);
     const size_t count = voxels().side_count();
     auto gpu = bounces_gl_->received_direct().download<glm::vec4>(count);
@@ -309,7 +309,7 @@ class Stages {
     gpu.run(gpu_.voxelization.voxels(), {gpu_.cells.normal_occupancy(), gpu_.cells.albedo(), gpu_.cells.emission()},
             flux_gl_.emitted(), n, gpu_.timer);
     const CellVolumes cells = to_cell_volumes(voxels().grid(), gpu_.cells.download());
-    PulseVolume cpu(voxels(), cells, scheme_);
+    PulseVolumeCpu cpu(voxels(), cells, scheme_);
     cpu.run(flux_.emitted, n);
     rows.push_back(
         compare_radiance(gpu.radiance(), cpu.radiance(), fmt::format("radiance, {} passes", n), kPowerLimit));
@@ -323,7 +323,7 @@ class Stages {
   SideFluxGl flux_gl_;
   SideFlux flux_;
   std::unique_ptr<BouncesGl> bounces_gl_;
-  std::unique_ptr<Bounces> bounces_;
+  std::unique_ptr<BouncesCpu> bounces_;
 };
 
 }  // namespace

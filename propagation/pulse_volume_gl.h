@@ -14,7 +14,7 @@ namespace volgi {
 /// harmonics per cell. They know neither sides nor orders, and neither keeps power (docs/theory.md#papers). Cost of a
 /// pass: 21 texel reads and 6 writes of 16 bytes a cell, and 2 reads more for gaitatzes2010 (order 2: 49 and 14).
 /// Memory: 192 bytes a cell (448), and the radiance. Source: Kaplanyan 2009; Gaitatzes 2010 section 4.2. Twin of
-/// PulseVolume.
+/// PulseVolumeCpu.
 class PulseVolumeGl {
  public:
   /// What cells hold of surfaces (CellVolumesGl), RGBA textures of the grid's cells. lpv2009 takes any.

@@ -5,7 +5,7 @@
 namespace volgi {
 
 /// What a TransportGl whose orders take many passes is, too, when an order can stop between two of them and go on
-/// later: amortised runs (BounceRules::passes_per_run) ask for it. Twin of Transport::begin and advance.
+/// later: amortised runs (BounceRules::passes_per_run) ask for it. Twin of TransportCpu::begin and advance.
 class ResumableGl {
  public:
   virtual ~ResumableGl() = default;

@@ -1,7 +1,7 @@
 // Twin of side_irradiance.comp.glsl and smooth_sides.comp.glsl (docs/theory.md#reconstruction).
 #include <bitset>
 
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "propagation/side_loops.h"
 
 namespace volgi {
@@ -54,7 +54,7 @@ float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, sh
 
 }  // namespace
 
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const Bounces& bounces) {
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces) {
   const std::vector<shared::Side>& sides = voxels.sides();
   const size_t count = sides.size();
   std::vector<glm::vec3> direct(count), indirect(count);  // weighted [W]

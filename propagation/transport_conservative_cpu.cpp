@@ -32,12 +32,12 @@ int longest_pulse(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.
 }  // namespace
 
 /// The end of a pulse on the grid of twice the edge.
-struct ConservativeTransport::CoarsePart {
+struct ConservativeTransportCpu::CoarsePart {
   CoarsePart(const VoxelGrid& half_voxels, int order)
       : voxels(half_voxels), transport(half_voxels, order), received(half_voxels.side_count()) {}
 
   const VoxelGrid& voxels;
-  ConservativeTransport transport;
+  ConservativeTransportCpu transport;
   std::vector<glm::vec4> received;
   std::unique_ptr<CoarseLink> link;  // made on first use
   size_t bytes() const {
@@ -45,8 +45,8 @@ struct ConservativeTransport::CoarsePart {
   }
 };
 
-ConservativeTransport::ConservativeTransport(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels,
-                                             const LobeKernels* kernels)
+ConservativeTransportCpu::ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels,
+                                                   const LobeKernels* kernels)
     : voxels_(voxels),
       order_(order),
       kernels_(kernels != nullptr ? *kernels : lobe_kernels(order)),
@@ -64,9 +64,9 @@ ConservativeTransport::ConservativeTransport(const VoxelGrid& voxels, int order,
   }
 }
 
-ConservativeTransport::~ConservativeTransport() = default;
+ConservativeTransportCpu::~ConservativeTransportCpu() = default;
 
-void ConservativeTransport::begin(std::span<const glm::vec4> sent) {
+void ConservativeTransportCpu::begin(std::span<const glm::vec4> sent) {
   assert(sent.size() == voxels_.side_count());
   std::vector<int> leaves;
   for (int n = 0; n < numbers().count(); ++n) {
@@ -82,7 +82,7 @@ void ConservativeTransport::begin(std::span<const glm::vec4> sent) {
   passes_ = 0;
 }
 
-void ConservativeTransport::emit_leaf(int number, std::span<const glm::vec4> sent, float* out, LeafLight& light) {
+void ConservativeTransportCpu::emit_leaf(int number, std::span<const glm::vec4> sent, float* out, LeafLight& light) {
   std::fill(out, out + lobes().leaf_floats(), 0.0f);
   if (const LeafWalls* walls = walls_[size_t(number)].get()) {
     for (const SideRow& row : walls->rows) {
@@ -97,13 +97,13 @@ void ConservativeTransport::emit_leaf(int number, std::span<const glm::vec4> sen
   kernels_.rescale(out, kAllRows, out, false, light);
 }
 
-void ConservativeTransport::pass(std::span<glm::vec4> received, bool reflect_hits) {
+void ConservativeTransportCpu::pass(std::span<glm::vec4> received, bool reflect_hits) {
   wave_.step([&](int number, float* out, LeafLight& light) { pass_leaf(number, received, reflect_hits, out, light); });
   ++passes_;
 }
 
-void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received, bool reflect_hits, float* out,
-                                      LeafLight& light) {
+void ConservativeTransportCpu::pass_leaf(int number, std::span<glm::vec4> received, bool reflect_hits, float* out,
+                                         LeafLight& light) {
   const std::uint64_t rows = half_steps_ ? kAllRows : wave_.rows_reached(number);
   wave_.write_only(number, rows);
   const float* beside[6];
@@ -132,7 +132,7 @@ void ConservativeTransport::pass_leaf(int number, std::span<glm::vec4> received,
 }
 
 /// The next leaf's neighbours at +x and +y have not been read in this pass: prefetches what it will need of them.
-void ConservativeTransport::fetch_faces(int number) const {
+void ConservativeTransportCpu::fetch_faces(int number) const {
   const LobeVolume& now = lobes();
   if (number + 1 >= numbers().count()) return;
   const int x = numbers().beside(number + 1, 1), y = numbers().beside(number + 1, 3);
@@ -142,8 +142,8 @@ void ConservativeTransport::fetch_faces(int number) const {
   }
 }
 
-void ConservativeTransport::hit_sides(int number, const LeafWalls& walls, std::uint64_t rows,
-                                      std::span<glm::vec4> received, bool reflect_hits, float* out) {
+void ConservativeTransportCpu::hit_sides(int number, const LeafWalls& walls, std::uint64_t rows,
+                                         std::span<glm::vec4> received, bool reflect_hits, float* out) {
   const float* own = lobes().leaf(number);
   const float step = half_steps_ ? 0.5f : 1.0f;
   const std::uint64_t lit = half_steps_ ? kAllRows : wave_.rows_lit(number);
@@ -169,7 +169,7 @@ void ConservativeTransport::hit_sides(int number, const LeafWalls& walls, std::u
 }
 
 /// What a partly covered face lets through.
-void ConservativeTransport::pass_partly(int number, const SideRow& row, int z, float share, float* out) {
+void ConservativeTransportCpu::pass_partly(int number, const SideRow& row, int z, float share, float* out) {
   const glm::ivec3 cell = kLeafCells * numbers().block(number) + glm::ivec3(row.row >> 3, row.row & 7, z);
   const glm::ivec3 from = cell + shared::face_step(row.face);
   if (!shared::cell_inside(voxels_.grid(), from)) return;
@@ -179,15 +179,15 @@ void ConservativeTransport::pass_partly(int number, const SideRow& row, int z, f
 }
 
 /// Judged by the last look. The coarse part takes over earlier.
-bool ConservativeTransport::ended(const BounceRules& rules) const {
+bool ConservativeTransportCpu::ended(const BounceRules& rules) const {
   if (!coarse_) return rules.pulse_ended(glm::vec3(looked_at_), glm::vec3(sent_));
   return glm::all(glm::lessThanEqual(looked_at_, kCoarseShare * sent_));
 }
 
 /// What is in flight is carried to its end on the coarse grid.
-glm::vec3 ConservativeTransport::end_coarsely(std::span<glm::vec4> received, const BounceRules& rules) {
+glm::vec3 ConservativeTransportCpu::end_coarsely(std::span<glm::vec4> received, const BounceRules& rules) {
   CoarsePart& c = *coarse_;
-  ConservativeTransport& t = c.transport;
+  ConservativeTransportCpu& t = c.transport;
   if (!c.link) c.link = std::make_unique<CoarseLink>(voxels_, c.voxels, coefficients(order_));
   t.wave_.start(c.link->reached(lobes()), [&](int number, float* out, LeafLight& light) {
     c.link->gather(lobes(), kernels_, number, out);
@@ -203,8 +203,8 @@ glm::vec3 ConservativeTransport::end_coarsely(std::span<glm::vec4> received, con
   return glm::vec3(lost + t.in_flight() + c.link->spread(c.received, received));
 }
 
-bool ConservativeTransport::advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules,
-                                    BounceReport& report) {
+bool ConservativeTransportCpu::advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules,
+                                       BounceReport& report) {
   // As the GPU: the look at the power in flight comes a batch late, and how advance() is called does not matter.
   const int limit = rules.iterations ? *rules.iterations : longest_pulse(voxels_.grid());
   bool ends = passes_ >= limit;
@@ -219,7 +219,7 @@ bool ConservativeTransport::advance(std::span<glm::vec4> received, int max_passe
   return ends;
 }
 
-RadianceVolume ConservativeTransport::radiance(std::span<const glm::vec4> sent) {
+RadianceVolume ConservativeTransportCpu::radiance(std::span<const glm::vec4> sent) {
   LobeSum sum(numbers(), coefficients(order_));
   std::vector<glm::vec4> ignored(voxels_.side_count(), glm::vec4(0.0f));
   BounceRules rules;
@@ -233,7 +233,7 @@ RadianceVolume ConservativeTransport::radiance(std::span<const glm::vec4> sent) 
   return sum.radiance(voxels_.grid());
 }
 
-size_t ConservativeTransport::bytes_for(const Grid& grid, int order, const ExpectedSides& expected) {
+size_t ConservativeTransportCpu::bytes_for(const Grid& grid, int order, const ExpectedSides& expected) {
   const LeafNumbers numbers(grid.cells);
   const size_t rows = expected.sides / 3;  // of 8 cells, on one face: some hold one side, some eight
   return LobeWave::bytes_for(numbers, coefficients(order)) +
@@ -241,7 +241,7 @@ size_t ConservativeTransport::bytes_for(const Grid& grid, int order, const Expec
          rows * sizeof(SideRow) + expected.sides * sizeof(LeafWalls::SideThere);
 }
 
-size_t ConservativeTransport::bytes() const {
+size_t ConservativeTransportCpu::bytes() const {
   size_t walls = 0;
   for (const auto& w : walls_) {
     if (w) walls += sizeof(LeafWalls) + w->rows.size() * sizeof(SideRow) + w->sides.size() * sizeof(w->sides[0]);

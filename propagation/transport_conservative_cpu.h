@@ -7,7 +7,7 @@
 #include "propagation/lobes/sh_lobes_kernels.h"
 #include "propagation/lobes/sh_lobes_walls.h"
 #include "propagation/lobes/sh_lobes_wave.h"
-#include "propagation/transport.h"
+#include "propagation/transport_cpu.h"
 #include "voxel/expected_sides.h"
 
 namespace volgi {
@@ -20,15 +20,15 @@ namespace volgi {
 /// fixed point. Not linear. Cost: leaves of 8^3 cells that light has not reached cost nothing; a lit leaf is read and
 /// written once a pass. Memory: 48 bytes a lit cell and state (108 for order 2), two states. Light under 1e-38 W counts
 /// as none.
-class ConservativeTransport : public Transport {
+class ConservativeTransportCpu : public TransportCpu {
  public:
   /// @param order    1 (4 coefficients) or 2 (9).
   /// @param half_voxels  the same scene in cells of twice the edge: carries what is left of a pulse to its end (may be
   /// null).
   /// @param kernels  of an instruction set, for tests; null: the machine's best.
-  ConservativeTransport(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels = nullptr,
-                        const LobeKernels* kernels = nullptr);
-  ~ConservativeTransport() override;
+  ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels = nullptr,
+                           const LobeKernels* kernels = nullptr);
+  ~ConservativeTransportCpu() override;
 
   void begin(std::span<const glm::vec4> sent) override;
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;

@@ -115,7 +115,7 @@ sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, std::vec
 }  // namespace
 
 /// Radiance of the blocks that light reaches, in OpenVDB's leaves.
-struct OrdinatesTransport::RadianceLeaves {
+struct OrdinatesTransportCpu::RadianceLeaves {
   using Tree = openvdb::Vec3SGrid::TreeType;
   using Leaf = Tree::LeafNodeType;
   using Coefficients = std::array<std::unique_ptr<Leaf>, 4>;
@@ -137,7 +137,7 @@ struct OrdinatesTransport::RadianceLeaves {
   RadianceVolume volume(const Grid& grid) &&;
 };
 
-RadianceVolume OrdinatesTransport::RadianceLeaves::volume(const Grid& grid) && {
+RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) && {
   tbb::parallel_for(size_t(0), by_block.size(), [&](size_t block) {
     Coefficients& leaves = by_block[block];
     if (!leaves[0]) return;
@@ -158,7 +158,8 @@ RadianceVolume OrdinatesTransport::RadianceLeaves::volume(const Grid& grid) && {
   return volume;
 }
 
-OrdinatesTransport::OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels)
+OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
+                                             const sweep::Kernels* kernels)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
@@ -173,7 +174,7 @@ OrdinatesTransport::OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice c
   pack_sides();
 }
 
-void OrdinatesTransport::pack_sides() {
+void OrdinatesTransportCpu::pack_sides() {
   const glm::ivec3 n = voxels_.blocks();
   sides_of_block_.assign(size_t(n.x) * size_t(n.y) * size_t(n.z), -1);
   side_.reserve(voxels_.side_count());
@@ -195,7 +196,7 @@ void OrdinatesTransport::pack_sides() {
   arrived_.resize(4 * side_.size());
 }
 
-void OrdinatesTransport::begin(std::span<const glm::vec4> sent) {
+void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
   assert(sent.size() == voxels_.side_count());
   tbb::parallel_for(size_t(0), block_sides_.size(), [&](size_t b) {
     const size_t first = block_sides_[b].first_side;
@@ -209,8 +210,8 @@ void OrdinatesTransport::begin(std::span<const glm::vec4> sent) {
   });
 }
 
-bool OrdinatesTransport::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
-                                 BounceReport& report) {
+bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
+                                    BounceReport& report) {
   assert(received.size() == voxels_.side_count());
   // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
   const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
@@ -228,7 +229,7 @@ bool OrdinatesTransport::advance(std::span<glm::vec4> received, int /*max_passes
   return true;
 }
 
-RadianceVolume OrdinatesTransport::radiance(std::span<const glm::vec4> sent) {
+RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
   begin(sent);
   RadianceLeaves leaves(voxels_.blocks());
   // Octants add to the same cells: one after the other.
@@ -238,7 +239,7 @@ RadianceVolume OrdinatesTransport::radiance(std::span<const glm::vec4> sent) {
 }
 
 /// Rows of blocks along x, by (y,z) along the flow; those of one diagonal y + z do not depend on each other.
-void OrdinatesTransport::sweep_octant(int octant, bool threaded, RadianceLeaves* leaves) {
+void OrdinatesTransportCpu::sweep_octant(int octant, bool threaded, RadianceLeaves* leaves) {
   const glm::ivec3 n = voxels_.blocks();
   Flow& flow = flows_[size_t(octant)];
   std::fill(flow.y_lit.begin(), flow.y_lit.end(), static_cast<unsigned char>(0));
@@ -256,7 +257,7 @@ void OrdinatesTransport::sweep_octant(int octant, bool threaded, RadianceLeaves*
   }
 }
 
-void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* leaves) {
+void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* leaves) {
   const FlushDenormals flush;
   const glm::ivec3 n = voxels_.blocks();
   const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
@@ -298,16 +299,16 @@ void OrdinatesTransport::sweep_row(int octant, int y, int z, RadianceLeaves* lea
   }
 }
 
-size_t OrdinatesTransport::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
+size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
   const glm::ivec3 n = leaf_blocks(grid);
   const size_t flows = 8 * size_t(n.x) * size_t(n.y + n.z);
-  return sizeof(OrdinatesTransport) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
+  return sizeof(OrdinatesTransportCpu) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
          size_t(n.x) * size_t(n.y) * size_t(n.z) * sizeof(int) +
          expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) +
          flows * (face_floats(octets_of(choice.directions / 8)) * sizeof(float) + 1);
 }
 
-size_t OrdinatesTransport::bytes() const {
+size_t OrdinatesTransportCpu::bytes() const {
   size_t bytes = sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + sides_of_block_.size() * 4 +
                  side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4));
   for (const Flow& flow : flows_) {

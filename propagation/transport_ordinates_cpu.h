@@ -6,7 +6,7 @@
 
 #include "propagation/ordinates.h"
 #include "propagation/sweep/sweep_kernel.h"
-#include "propagation/transport.h"
+#include "propagation/transport_cpu.h"
 #include "voxel/expected_sides.h"
 
 namespace volgi {
@@ -21,11 +21,11 @@ namespace volgi {
 /// take octants, and diagonals of rows of blocks where that is not even; every sum has a fixed order.
 /// Memory: two planes of the grid per octant (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a
 /// few to fill registers), 84 bytes a side, 2.2 KiB a block with sides. Twin: transport_ordinates_gl.cpp.
-class OrdinatesTransport : public Transport {
+class OrdinatesTransportCpu : public TransportCpu {
  public:
   /// @param kernels  null: the fastest that this machine can run.
   /// @throws Error(usage) as ordinate_set.
-  OrdinatesTransport(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
+  OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
 
   void begin(std::span<const glm::vec4> sent) override;
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;

@@ -58,17 +58,17 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
   size_t bytes =
       voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(grid, expected.sides, expected.blocks) + flux;
   if (!carries_sides(scheme.scheme)) {
-    return bytes + PulseVolume::bytes_for(grid, scheme, expected.blocks) + cell_volumes_bytes(expected.blocks);
+    return bytes + PulseVolumeCpu::bytes_for(grid, scheme, expected.blocks) + cell_volumes_bytes(expected.blocks);
   }
-  bytes += Bounces::bytes_for(expected.sides) + side_irradiance_bytes(expected.sides);
+  bytes += BouncesCpu::bytes_for(expected.sides) + side_irradiance_bytes(expected.sides);
   if (scheme.scheme == Scheme::ordinates)
-    return bytes + OrdinatesTransport::bytes_for(grid, choose_ordinates(grid.cells, scheme), expected);
-  bytes += ConservativeTransport::bytes_for(grid, scheme.sh_order, expected);
+    return bytes + OrdinatesTransportCpu::bytes_for(grid, choose_ordinates(grid.cells, scheme), expected);
+  bytes += ConservativeTransportCpu::bytes_for(grid, scheme.sh_order, expected);
   if (!has_coarse_part(scheme, grid)) return bytes;
   const Grid half = half_grid(grid);
   const ExpectedSides coarse = expected_sides(scene, half);
   return bytes + VoxelGrid::bytes_for(half, coarse.sides, coarse.blocks) +
-         ConservativeTransport::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
+         ConservativeTransportCpu::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
@@ -106,13 +106,13 @@ void VolumeCpu::voxelize() {
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
-    pulse_ = std::make_unique<PulseVolume>(voxels_, cells_, options_.scheme);
+    pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
   } else {
     auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr);
     if (bounces_) {
       bounces_->set_transport(std::move(transport));
     } else {
-      bounces_ = std::make_unique<Bounces>(std::move(transport));
+      bounces_ = std::make_unique<BouncesCpu>(std::move(transport));
     }
   }
 }
@@ -158,7 +158,7 @@ RadianceVolume VolumeCpu::radiance() {
 size_t VolumeCpu::bytes() const {
   size_t sum = mipmaps_.bytes() + voxels_.bytes() + half_voxels_.bytes();
   sum += (flux_.emitted.size() + flux_.punctual.size()) * sizeof(glm::vec4);
-  if (bounces_) sum += bounces_->transport().bytes() + Bounces::bytes_for(voxels_.side_count());
+  if (bounces_) sum += bounces_->transport().bytes() + BouncesCpu::bytes_for(voxels_.side_count());
   sum += side_irradiance_bytes(irradiance_.indirect.size());
   if (pulse_) sum += pulse_->bytes() + cell_volumes_bytes(cells_);
   return sum;

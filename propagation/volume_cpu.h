@@ -3,8 +3,8 @@
 
 #include "core/mipmaps.h"
 #include "core/scene.h"
-#include "propagation/bounces.h"
-#include "propagation/pulse_volume.h"
+#include "propagation/bounces_cpu.h"
+#include "propagation/pulse_volume_cpu.h"
 #include "propagation/volume_options.h"
 #include "voxel/cell_volumes.h"
 #include "voxel/expected_sides.h"
@@ -13,7 +13,7 @@ namespace volgi {
 
 /// The volume subsystem on the CPU, without any GL: voxelization, propagation, irradiance per side, each apart for
 /// timers. Light comes as SideFlux from whoever has it: of lamps and emissive surfaces
-/// propagation/light_in/direct_light_cpu.h, of virtual lights propagation/light_in/side_gather.h.
+/// propagation/light_in/direct_light_cpu.h, of virtual lights propagation/light_in/side_gather_cpu.h.
 class VolumeCpu {
  public:
   /// @param scene  must outlive the volume.
@@ -55,8 +55,8 @@ class VolumeCpu {
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;
   SideFlux flux_;
-  std::unique_ptr<Bounces> bounces_;
-  std::unique_ptr<PulseVolume> pulse_;
+  std::unique_ptr<BouncesCpu> bounces_;
+  std::unique_ptr<PulseVolumeCpu> pulse_;
   SideIrradiance irradiance_;
   BounceReport report_;
   bool moved_ = false;  // since the last voxelization

@@ -40,7 +40,7 @@ VoxelGrid closed_box(int cells) {
 }
 
 /// Shares of all leaves, rows of 8 cells and cells that hold light: what no sparse code of that grain can do without.
-glm::dvec3 lit_shares(const ConservativeTransport& transport) {
+glm::dvec3 lit_shares(const ConservativeTransportCpu& transport) {
   size_t rows = 0, cells = 0;
   for (const int number : transport.lobes().leaves()) {
     const float* leaf = transport.lobes().leaf(number);
@@ -63,7 +63,7 @@ glm::dvec3 lit_shares(const ConservativeTransport& transport) {
 
 nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
   const VoxelGrid voxels = closed_box(cells);
-  ConservativeTransport transport(voxels, 1);
+  ConservativeTransportCpu transport(voxels, 1);
   const Powers sent(voxels.side_count(), glm::vec4(1.0f, 0.8f, 0.6f, 0.0f));
   Powers received(voxels.side_count(), glm::vec4(0.0f));
   transport.set_dense(true);
@@ -98,10 +98,10 @@ nlohmann::json bench_conservative(int cells, int iterations, int repeats) {
 
 nlohmann::json bench_sparse(const VoxelGrid& voxels, std::span<const glm::vec4> sent, int iterations, int repeats) {
   Powers received(sent.size(), glm::vec4(0.0f));
-  ConservativeTransport transport(voxels, 1);
-  ConservativeTransport dense_transport(voxels, 1);
+  ConservativeTransportCpu transport(voxels, 1);
+  ConservativeTransportCpu dense_transport(voxels, 1);
   dense_transport.set_dense(true);
-  const auto ms_per_pass = [&](ConservativeTransport& t) {
+  const auto ms_per_pass = [&](ConservativeTransportCpu& t) {
     t.begin(sent);
     return time_ms([&] {
              for (int pass = 0; pass < iterations; ++pass) t.pass(received, true);

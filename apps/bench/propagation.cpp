@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/bench/timing.h"
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -100,7 +100,7 @@ Solved solve_ordinates(const Box& box, int directions, Ordinates rule, BounceRul
   SchemeOptions scheme;
   scheme.directions = directions;
   scheme.ordinates = rule;
-  Bounces bounces(make_transport(box.voxels, scheme));
+  BouncesCpu bounces(make_transport(box.voxels, scheme));
   bounces.run(box.voxels, box.flux, true, exact_rules());
   const std::vector<glm::vec4> converged = bounces.received_indirect();
   BounceRules rules;
@@ -115,7 +115,7 @@ Solved solve_conservative(const Box& box, int repeats) {
   SchemeOptions scheme;
   scheme.scheme = Scheme::conservative;
   scheme.coarse_start = false;
-  Bounces bounces(make_transport(box.voxels, scheme));
+  BouncesCpu bounces(make_transport(box.voxels, scheme));
   BounceRules rules;
   rules.largest_albedo = kAlbedo;
   rules.iterations = 60 * std::max(box.voxels.grid().cells.x, 16);
@@ -171,7 +171,7 @@ class Passes {
 
  private:
   Box box_;
-  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<TransportCpu> transport_;
   int passes_;
   std::vector<glm::vec4> sent_, received_;
 };

@@ -1,4 +1,4 @@
-// All bounces at once: P = K(e + fP), by conjugate gradients or by P <- K(e + fP); see propagation/bounces.h for the
+// All bounces at once: P = K(e + fP), by conjugate gradients or by P <- K(e + fP); see propagation/bounces_cpu.h for the
 // equations. Kernels run as 64 groups of 256 threads that stride over the sides, so that sums have a fixed order.
 #include "shared/bounce_state.shared.h"
 #include "shared/side.shared.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/visibility/light_flux.h"
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "propagation/bounces_gl.h"
 #include "propagation/side_irradiance_gl.h"
 #include "propagation/transport_conservative_gl.h"
@@ -54,7 +54,7 @@ class Cavity : public GlTest {
     flux.punctual = flux.emitted;
     deposit(voxels, pieces, flux.emitted, flux.lost);
     if (!scene.lights.empty()) deposit(voxels, light_flux(EmbreeScene(scene), 512), flux.punctual, flux.lost);
-    Bounces bounces(make_transport(voxels, scheme_options(scheme)));
+    BouncesCpu bounces(make_transport(voxels, scheme_options(scheme)));
     BounceRules rules;
     rules.largest_albedo = largest_albedo;
     bounces.run(voxels, flux, !pieces.empty(), rules);

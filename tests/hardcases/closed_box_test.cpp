@@ -1,7 +1,7 @@
 // The closed box with a small ceiling emitter against its exact radiosity (docs/hard-cases.md, "refine").
 #include <gtest/gtest.h>
 
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "tests/support/box_radiosity.h"
 
 namespace volgi::test {
@@ -53,7 +53,7 @@ Deviation first_bounce_exact(float albedo, int cells, const SchemeOptions& schem
     flux.punctual.emplace_back(glm::vec3(albedo * float(exact.first[walls.patch_of[i]]) * voxels.sides()[i].area_m2),
                                0.0f);
   }
-  Bounces bounces(make_transport(voxels, scheme));
+  BouncesCpu bounces(make_transport(voxels, scheme));
   BounceRules rules;
   rules.largest_albedo = albedo;
   bounces.run(voxels, flux, false, rules);

@@ -1,5 +1,5 @@
 // Orders, conjugate gradients, warm starts and amortised runs on the CPU, against the series summed up in double.
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/task_arena.h>
@@ -97,8 +97,8 @@ class BouncesCpu : public ::testing::Test {
     }
     return {rounded(direct), rounded(all)};
   }
-  Bounces matrix() const { return Bounces(std::make_unique<MatrixTransport>(s_, voxels_)); }
-  Bounces pulse() const { return Bounces(std::make_unique<PulseTransport>(s_, voxels_)); }
+  BouncesCpu matrix() const { return BouncesCpu(std::make_unique<MatrixTransport>(s_, voxels_)); }
+  BouncesCpu pulse() const { return BouncesCpu(std::make_unique<PulseTransport>(s_, voxels_)); }
   SideFlux dimmed(glm::vec3 share) const {
     SideFlux flux = flux_;
     for (Powers* p : {&flux.emitted, &flux.punctual}) {
@@ -125,7 +125,7 @@ TEST_F(BouncesCpu, PartialSums) {
   for (bool emission : {false, true}) {
     for (int n : {0, 1, 2, 7}) {
       rules_.bounces = n;
-      Bounces bounces = matrix();
+      BouncesCpu bounces = matrix();
       const BounceReport report = bounces.run(voxels_, flux_, emission, rules_);
       const Answer exact = series(flux_, emission, n);
       EXPECT_EQ(report.orders, n + (emission ? 1 : 0));
@@ -142,7 +142,7 @@ TEST_F(BouncesCpu, BothSolversEndWithinTheTolerance) {
     int passes[2];
     for (Solver solver : {Solver::plain, Solver::automatic}) {
       rules_.solver = solver;
-      Bounces bounces = matrix();
+      BouncesCpu bounces = matrix();
       const BounceReport report = bounces.run(voxels_, flux_, emission, rules_);
       EXPECT_TRUE(report.converged);
       EXPECT_EQ(report.conjugate_gradients, solver == Solver::automatic);
@@ -163,7 +163,7 @@ TEST_F(BouncesCpu, BothSolversEndWithinTheTolerance) {
 // P <- K(e + fP) from black ends when the series does: the same sums, and what is left is what would be sent next.
 TEST_F(BouncesCpu, RenewalsEndAsOrdersDo) {
   rules_.solver = Solver::plain;
-  Bounces one_by_one = matrix(), renewed = matrix();
+  BouncesCpu one_by_one = matrix(), renewed = matrix();
   const BounceReport a = one_by_one.run(voxels_, flux_, true, rules_);
   rules_.warm_start = true;
   const BounceReport b = renewed.run(voxels_, flux_, true, rules_);
@@ -176,7 +176,7 @@ TEST_F(BouncesCpu, RenewalsEndAsOrdersDo) {
 TEST_F(BouncesCpu, ReportsPowerSent) {
   for (Solver solver : {Solver::plain, Solver::conjugate_gradients}) {
     rules_.solver = solver;
-    Bounces bounces = matrix();
+    BouncesCpu bounces = matrix();
     const BounceReport report = bounces.run(voxels_, flux_, true, rules_);
     const Powers all = bounces.sent(voxels_, flux_);
     for (int band = 0; band < 3; ++band) {
@@ -187,10 +187,10 @@ TEST_F(BouncesCpu, ReportsPowerSent) {
 }
 
 TEST_F(BouncesCpu, ScalesWithTheLight) {
-  Bounces bounces = matrix();
+  BouncesCpu bounces = matrix();
   bounces.run(voxels_, flux_, true, rules_);
   for (float scale : {1e-12f, 1e12f}) {
-    Bounces scaled = matrix();
+    BouncesCpu scaled = matrix();
     const SideFlux flux = dimmed(glm::vec3(scale));
     scaled.run(voxels_, flux, true, rules_);
     EXPECT_NEAR(sum(scaled.received_indirect()).x / double(scale) / sum(bounces.received_indirect()).x, 1.0, 1e-5);
@@ -201,7 +201,7 @@ TEST_F(BouncesCpu, WarmStartReachesTheSameAnswerSooner) {
   for (Solver solver : {Solver::plain, Solver::automatic}) {
     rules_.solver = solver;
     rules_.warm_start = true;
-    Bounces bounces = matrix();
+    BouncesCpu bounces = matrix();
     const int cold = bounces.run(voxels_, flux_, true, rules_).passes;
     const SideFlux changed = moved();
     const BounceReport warm = bounces.run(voxels_, changed, true, rules_);
@@ -228,7 +228,7 @@ TEST_F(BouncesCpu, NoDriftInAStaticScene) {
   for (Solver solver : {Solver::plain, Solver::automatic}) {
     rules_.solver = solver;
     rules_.warm_start = true;
-    Bounces bounces = matrix();
+    BouncesCpu bounces = matrix();
     bounces.run(voxels_, flux_, true, rules_);
     for (int run = 0; run < 200; ++run) {
       const BounceReport report = bounces.run(voxels_, flux_, true, rules_);
@@ -240,7 +240,7 @@ TEST_F(BouncesCpu, NoDriftInAStaticScene) {
 
 TEST_F(BouncesCpu, WarmStartNeedsAsManySides) {
   rules_.warm_start = true;
-  Bounces bounces = matrix();
+  BouncesCpu bounces = matrix();
   const BounceReport cold = bounces.run(voxels_, flux_, false, rules_);
   const VoxelGrid other = rooms_in_a_row(1, 4, glm::vec3(0.5f));
   bounces.set_transport(std::make_unique<StepTransport>(other, 8));
@@ -250,7 +250,7 @@ TEST_F(BouncesCpu, WarmStartNeedsAsManySides) {
 }
 
 /// Runs until the answer has come within 1 % of `exact` and stays there.
-int runs_until_near(Bounces& bounces, const VoxelGrid& voxels, const SideFlux& flux, const BounceRules& rules,
+int runs_until_near(BouncesCpu& bounces, const VoxelGrid& voxels, const SideFlux& flux, const BounceRules& rules,
                     const Powers& exact, int runs) {
   int near = 0;
   for (int run = 1; run <= runs; ++run) {
@@ -266,7 +266,7 @@ TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
   const Answer full = series(flux_, true, kAll), dim = series(half, true, kAll);
   for (int passes : {1, 3}) {
     rules_.passes_per_run = passes;
-    Bounces bounces = matrix();
+    BouncesCpu bounces = matrix();
     const int up = runs_until_near(bounces, voxels_, flux_, rules_, full.indirect, 120);
     EXPECT_LE(power_error(bounces.received_indirect(), full.indirect), 1e-5);  // 120 runs: no drift
     const int down = runs_until_near(bounces, voxels_, half, rules_, dim.indirect, 120);
@@ -283,7 +283,7 @@ TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
 TEST_F(BouncesCpu, AmortisedPulseGoesOnInTheNextRun) {
   rules_.passes_per_run = 4;
   const Answer exact = series(flux_, false, kAll);
-  Bounces bounces = pulse();
+  BouncesCpu bounces = pulse();
   Powers before = bounces.received_indirect();
   int published = 0, orders = 0;
   for (int run = 0; run < 400; ++run) {
@@ -303,7 +303,7 @@ TEST_F(BouncesCpu, AmortisedPulseGoesOnInTheNextRun) {
 
 TEST_F(BouncesCpu, PulsesTakeOrdersAndWarmStarts) {
   const Answer exact = series(flux_, true, kAll);
-  Bounces bounces = pulse();
+  BouncesCpu bounces = pulse();
   const BounceReport cold = bounces.run(voxels_, flux_, true, rules_);
   EXPECT_FALSE(cold.conjugate_gradients);
   EXPECT_GT(cold.passes, 5 * cold.orders);
@@ -319,7 +319,7 @@ TEST_F(BouncesCpu, SameBytesWithAnyNumberOfThreads) {
   for (int threads : {1, 2}) {
     oneapi::tbb::task_arena arena(threads);
     arena.execute([&] {
-      Bounces bounces = matrix();
+      BouncesCpu bounces = matrix();
       bounces.run(voxels_, flux_, true, rules_);
       answers[threads - 1] = bounces.received_indirect();
     });
@@ -328,7 +328,7 @@ TEST_F(BouncesCpu, SameBytesWithAnyNumberOfThreads) {
 }
 
 TEST_F(BouncesCpu, RefusesWhatMakesNoSense) {
-  const auto refused = [&](Bounces bounces, const BounceRules& rules) {
+  const auto refused = [&](BouncesCpu bounces, const BounceRules& rules) {
     try {
       bounces.run(voxels_, flux_, false, rules);
     } catch (const Error& error) {

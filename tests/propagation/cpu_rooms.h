@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "propagation/side_flux.h"
-#include "propagation/transport.h"
+#include "propagation/transport_cpu.h"
 #include "tests/propagation/step_transport.h"
 #include "tests/support/volume_scenes.h"
 
@@ -65,7 +65,7 @@ inline SideFlux ceiling_light(const VoxelGrid& voxels, int room, glm::vec3 flux)
 }
 
 /// received = tau S sent, S given: no volume at all.
-class MatrixTransport : public Transport {
+class MatrixTransport : public TransportCpu {
  public:
   using Matrix = std::vector<std::vector<double>>;
   MatrixTransport(Matrix s, const VoxelGrid& voxels) : s_(std::move(s)), voxels_(voxels) {}

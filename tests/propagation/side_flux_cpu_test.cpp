@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "tests/propagation/cpu_rooms.h"
 
 namespace volgi::test {
@@ -104,7 +104,7 @@ TEST(SideFluxCpu, TiltedSurfacesSplit) {
 /// E of every side is the mean over what light can reach within the 3^3 cells.
 class SideIrradianceCpu : public ::testing::Test {
  protected:
-  SideIrradiance after(const VoxelGrid& voxels, const SideFlux& flux, Bounces& bounces) {
+  SideIrradiance after(const VoxelGrid& voxels, const SideFlux& flux, BouncesCpu& bounces) {
     BounceRules rules;
     rules.largest_albedo = 0.8f;
     bounces.run(voxels, flux, true, rules);
@@ -117,7 +117,7 @@ TEST_F(SideIrradianceCpu, FurnaceIsEven) {
   SideFlux flux;
   for (const shared::Side& side : voxels.sides()) flux.emitted.emplace_back(glm::vec3(side.area_m2), 0.0f);
   flux.punctual.assign(voxels.side_count(), glm::vec4(0.0f));
-  Bounces bounces(std::make_unique<StepTransport>(voxels, 24));
+  BouncesCpu bounces(std::make_unique<StepTransport>(voxels, 24));
   const SideIrradiance e = after(voxels, flux, bounces);
   for (size_t i = 0; i < voxels.side_count(); ++i) {  // B = 1 + rho E, E = B
     EXPECT_NEAR(e.direct[i].x, 1.0f, 1e-4f);
@@ -129,7 +129,7 @@ TEST_F(SideIrradianceCpu, WallsBoundTheMean) {
   const int size = 8;
   const VoxelGrid voxels = rooms_in_a_row(2, size, glm::vec3(0.0f));
   SideFlux flux = ceiling_light(voxels, 0, glm::vec3(1.0f));
-  Bounces bounces(std::make_unique<StepTransport>(voxels, 24));
+  BouncesCpu bounces(std::make_unique<StepTransport>(voxels, 24));
   const SideIrradiance e = after(voxels, flux, bounces);
   const auto reference = [&](size_t i) {
     const glm::ivec3 centre = shared::cell_coord(voxels.grid(), voxels.sides()[i].cell);
@@ -174,7 +174,7 @@ TEST_F(SideIrradianceCpu, ClampsTheMeanOnly) {
   const float own = shared::staircase_own_share(sides[0].normal, 1);
   const float world = shared::staircase_world_share(sides[0].normal, 1);
   for (float share : {0.9f, 0.1f}) {
-    Bounces bounces(std::make_unique<MatrixTransport>(
+    BouncesCpu bounces(std::make_unique<MatrixTransport>(
         MatrixTransport::Matrix{{0, double(share), 0}, {double(share), 0, 0}, {0, 0, 0}}, voxels));
     const SideIrradiance e = after(voxels, flux, bounces);
     const float shaded = -own / (world * area), lit = share * s / (world * area);

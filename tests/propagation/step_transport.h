@@ -2,12 +2,12 @@
 #include <vector>
 
 #include "propagation/ordinates.h"
-#include "propagation/transport.h"
+#include "propagation/transport_cpu.h"
 
 namespace volgi::test {
 
-/// The step scheme as a Transport, written for reading (docs/theory.md#ordinates).
-class StepTransport : public Transport {
+/// The step scheme as a TransportCpu, written for reading (docs/theory.md#ordinates).
+class StepTransport : public TransportCpu {
  public:
   StepTransport(const VoxelGrid& voxels, int directions) : voxels_(voxels), set_(ordinate_set(directions)) {}
 

@@ -18,7 +18,7 @@ class Conservative : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Orders, Conservative, testing::Values(1, 2));
 
-Powers run_passes(ConservativeTransport& transport, const Powers& sent, int passes, bool reflect_hits) {
+Powers run_passes(ConservativeTransportCpu& transport, const Powers& sent, int passes, bool reflect_hits) {
   Powers received(sent.size(), glm::vec4(0.0f));
   transport.begin(sent);
   for (int i = 0; i < passes; ++i) transport.pass(received, reflect_hits);
@@ -59,7 +59,7 @@ TEST_P(Conservative, AgreesWithThePlainPulse) {
   const VoxelGrid voxels = clutter({11, 17, 9}, 0.7f, 5);
   const Powers sent = random_powers(voxels.side_count(), 2);
   for (const bool reflect_hits : {false, true}) {
-    ConservativeTransport transport(voxels, order());
+    ConservativeTransportCpu transport(voxels, order());
     PlainPulse plain(voxels, order());
     Powers received(sent.size(), glm::vec4(0.0f));
     std::vector<glm::dvec3> exact(sent.size(), glm::dvec3(0.0));
@@ -82,7 +82,7 @@ TEST_P(Conservative, AgreesWithThePlainPulse) {
 
 TEST_P(Conservative, VoidKeepsPower) {
   const VoxelGrid voxels = plate_in_void(24, 2);
-  ConservativeTransport transport(voxels, order());
+  ConservativeTransportCpu transport(voxels, order());
   const Powers sent = random_powers(voxels.side_count(), 3);
   Powers received(sent.size(), glm::vec4(0.0f));
   transport.begin(sent);
@@ -104,7 +104,7 @@ TEST_P(Conservative, PartlyCoveredFacesKeepPower) {
     const int x = face == 0 ? cell.x : face == 1 ? cell.x + 1 : -1;
     return x == 8 ? 0.4f : 0.0f;  // across a border of leaves
   });
-  ConservativeTransport transport(voxels, order());
+  ConservativeTransportCpu transport(voxels, order());
   const Powers sent = random_powers(voxels.side_count(), 4);
   Powers received(sent.size(), glm::vec4(0.0f));
   transport.begin(sent);
@@ -115,7 +115,7 @@ TEST_P(Conservative, PartlyCoveredFacesKeepPower) {
 // A beam's worst case: one side alone sends.
 TEST_P(Conservative, NothingIsNegative) {
   const VoxelGrid voxels = clutter({12, 12, 12}, 0.5f, 8);
-  ConservativeTransport transport(voxels, order());
+  ConservativeTransportCpu transport(voxels, order());
   for (size_t i = 0; i < voxels.side_count(); i += 501) {
     Powers sent(voxels.side_count(), glm::vec4(0.0f));
     sent[i] = glm::vec4(1.0f, 0.5f, 0.0f, 0.0f);
@@ -154,12 +154,12 @@ TEST_P(Conservative, InstructionSetsAgree) {
   const VoxelGrid voxels = clutter({17, 9, 16}, 0.6f, 12);
   const Powers sent = random_powers(voxels.side_count(), 5);
   const LobeKernels* baseline = lobe_kernels(order(), "baseline");
-  ConservativeTransport reference(voxels, order(), nullptr, baseline);
+  ConservativeTransportCpu reference(voxels, order(), nullptr, baseline);
   const Powers expected = run_passes(reference, sent, 20, true);
   for (const char* name : {"avx2", "avx512"}) {
     const LobeKernels* kernels = lobe_kernels(order(), name);
     if (kernels == nullptr) continue;
-    ConservativeTransport transport(voxels, order(), nullptr, kernels);
+    ConservativeTransportCpu transport(voxels, order(), nullptr, kernels);
     EXPECT_LT(largest_difference(run_passes(transport, sent, 20, true), expected), 1e-5 * largest(expected)) << name;
   }
 }
@@ -168,7 +168,7 @@ TEST_P(Conservative, SparseIsDenseBitForBit) {
   const VoxelGrid voxels = clutter({40, 17, 20}, 0.6f, 21);
   Powers sent(voxels.side_count(), glm::vec4(0.0f));
   for (size_t i = 0; i < 20; ++i) sent[i] = glm::vec4(1.0f, 0.3f, 0.0f, 0.0f);
-  ConservativeTransport sparse(voxels, order()), dense(voxels, order());
+  ConservativeTransportCpu sparse(voxels, order()), dense(voxels, order());
   dense.set_dense(true);
   const Powers a = run_passes(sparse, sent, 10, true);
   const Powers b = run_passes(dense, sent, 10, true);
@@ -188,7 +188,7 @@ TEST_P(Conservative, ThreadsDoNotMatter) {
   glm::dvec3 in_flight[2];
   for (int i = 0; i < 2; ++i) {
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, i == 0 ? 1 : 4);
-    ConservativeTransport transport(voxels, order());
+    ConservativeTransportCpu transport(voxels, order());
     received[i] = run_passes(transport, sent, 12, true);
     in_flight[i] = transport.in_flight();
   }
@@ -218,7 +218,7 @@ TEST_P(Conservative, TurnedVoxelsGiveTurnedLight) {
   const Powers sent = random_powers(voxels.side_count(), 9);
   Powers sent_turned(sent.size());
   for (size_t i = 0; i < same.size(); ++i) sent_turned[i] = sent[same[i]];
-  ConservativeTransport a(voxels, order()), b(turned, order());
+  ConservativeTransportCpu a(voxels, order()), b(turned, order());
   const Powers expected = run_passes(a, sent, 20, true);
   const Powers received = run_passes(b, sent_turned, 20, true);
   double worst = 0.0;
@@ -230,7 +230,7 @@ TEST_P(Conservative, TurnedVoxelsGiveTurnedLight) {
 TEST_P(Conservative, OrdersEndInTheFurnace) {
   for (const float albedo : {0.0f, 0.5f, 0.8f}) {
     const VoxelGrid voxels = closed_box({9, 8, 10}, albedo);
-    ConservativeTransport transport(voxels, order());
+    ConservativeTransportCpu transport(voxels, order());
     BounceRules rules;
     rules.largest_albedo = albedo;
     Powers sent;
@@ -257,7 +257,7 @@ TEST_P(Conservative, PassesAreCountedAndDoNotDependOnHowTheyAreAskedFor) {
   BounceRules rules;
   Powers at_once(sent.size(), glm::vec4(0.0f)), in_steps(at_once);
   BounceReport a, b;
-  ConservativeTransport transport(voxels, order());
+  ConservativeTransportCpu transport(voxels, order());
   transport.carry(sent, at_once, rules, a);
   transport.begin(sent);
   while (!transport.advance(in_steps, 5, rules, b)) {
@@ -277,7 +277,7 @@ TEST_P(Conservative, PassesAreCountedAndDoNotDependOnHowTheyAreAskedFor) {
 // linear, so not exactly: measured +3.4 % (order 1) and +2.0 % (order 2).
 TEST_P(Conservative, RadianceInTheFurnace) {
   const VoxelGrid voxels = closed_box({16, 16, 16}, 0.0f), half_voxels = closed_box({8, 8, 8}, 0.0f, 0.5f);
-  ConservativeTransport transport(voxels, order(), &half_voxels);  // whose coarse part takes nothing away
+  ConservativeTransportCpu transport(voxels, order(), &half_voxels);  // whose coarse part takes nothing away
   Powers sent;
   for (const shared::Side& side : voxels.sides()) sent.emplace_back(glm::vec3(float(M_PI) * side.area_m2), 0.0f);
   const RadianceVolume radiance = transport.radiance(sent);
@@ -311,7 +311,7 @@ Powers ceiling_light(const VoxelGrid& voxels) {
 }
 
 /// All orders, one by one; red.
-std::vector<double> all_orders(ConservativeTransport& transport, Powers sent, double albedo, int* passes = nullptr) {
+std::vector<double> all_orders(ConservativeTransportCpu& transport, Powers sent, double albedo, int* passes = nullptr) {
   BounceRules rules;
   rules.largest_albedo = float(albedo);
   std::vector<double> received(sent.size(), 0.0);
@@ -373,7 +373,7 @@ TEST_P(Conservative, ClosedBoxAgainstRadiosity) {
       indirect_sides.push_back(indirect[p]);
       returned.emplace_back(glm::vec3(limit.albedo * float(first[p])), 0.0f);
     }
-    ConservativeTransport transport(voxels, order());
+    ConservativeTransportCpu transport(voxels, order());
     const Deviation alone = deviation(all_orders(transport, light, double(limit.albedo)), all_sides);
     std::vector<double> later = all_orders(transport, returned, double(limit.albedo));
     for (size_t i = 0; i < later.size(); ++i) later[i] += first[patch[i]];
@@ -395,7 +395,7 @@ TEST_P(Conservative, CoarsePartEndsAPulse) {
   BounceRules rules;
   rules.largest_albedo = 0.8f;
   const auto run = [&](int iterations, const VoxelGrid* half, BounceReport& report) {
-    ConservativeTransport transport(voxels, order(), half);
+    ConservativeTransportCpu transport(voxels, order(), half);
     Powers received(light.size(), glm::vec4(0.0f));
     rules.iterations = iterations;
     transport.carry(light, received, rules, report);
@@ -420,7 +420,7 @@ TEST_P(Conservative, CoarsePartEndsAPulse) {
 TEST_P(Conservative, CoarsePartOfOrdersOneByOne) {
   const VoxelGrid voxels = grey_cube(24, 0.5f), half_voxels = grey_cube(12, 0.5f);
   const Powers light = ceiling_light(voxels);
-  ConservativeTransport fine(voxels, order()), coarse(voxels, order(), &half_voxels);
+  ConservativeTransportCpu fine(voxels, order()), coarse(voxels, order(), &half_voxels);
   int fine_passes = 0, coarse_passes = 0;
   const std::vector<double> expected = all_orders(fine, light, 0.5, &fine_passes);
   const Deviation d = deviation(all_orders(coarse, light, 0.5, &coarse_passes), expected);
@@ -452,7 +452,7 @@ TEST_P(Conservative, CoarsePartDoesNotLeak) {
     for (size_t i = 0; i < light.size(); ++i) {
       if (voxels.sides()[i].face == 3 && in_lit_room(i)) light[i] = glm::vec4(1.0f);
     }
-    ConservativeTransport transport(voxels, order(), &half_voxels);
+    ConservativeTransportCpu transport(voxels, order(), &half_voxels);
     BounceRules rules;
     rules.largest_albedo = 0.8f;
     rules.iterations = 20;

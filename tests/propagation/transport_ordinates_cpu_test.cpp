@@ -28,7 +28,7 @@ using test::Powers;
 using test::random_faces;
 using test::random_powers;
 
-Powers carry(Transport& transport, const Powers& sent) {
+Powers carry(TransportCpu& transport, const Powers& sent) {
   Powers received(sent.size(), glm::vec4(0.0f));
   BounceReport report;
   transport.carry(sent, received, BounceRules{}, report);
@@ -37,7 +37,7 @@ Powers carry(Transport& transport, const Powers& sent) {
 }
 
 Powers carry(const VoxelGrid& voxels, OrdinateChoice choice, const Powers& sent) {
-  OrdinatesTransport transport(voxels, choice);
+  OrdinatesTransportCpu transport(voxels, choice);
   return carry(transport, sent);
 }
 
@@ -73,7 +73,7 @@ TEST_P(OrdinatesCpu, AgreesWithPlainSweep) {
     const sweep::Available available = sweep::available();
     for (int k = 0; k < available.count; ++k) {
       SCOPED_TRACE(available.kernels[k].name);
-      OrdinatesTransport transport(voxels, GetParam(), &available.kernels[k]);
+      OrdinatesTransportCpu transport(voxels, GetParam(), &available.kernels[k]);
       expect_near(carry(transport, sent), plain.received, 2e-6);
       // A second order adds, and finds nothing left over of the first.
       Powers received(sent.size(), glm::vec4(1.0f, 1.0f, 1.0f, 7.0f));
@@ -98,7 +98,7 @@ TEST_P(OrdinatesCpu, RadianceAgreesWithPlainSweep) {
   const Plain plain = PlainSweep(voxels, GetParam(), sent).result();
   const sweep::Available available = sweep::available();
   for (int k = 0; k < available.count; ++k) {
-    OrdinatesTransport transport(voxels, GetParam(), &available.kernels[k]);
+    OrdinatesTransportCpu transport(voxels, GetParam(), &available.kernels[k]);
     const RadianceVolume volume = transport.radiance(sent);
     ASSERT_EQ(volume.sh.size(), 4u);
     for (size_t m = 0; m < 4; ++m) {
@@ -146,7 +146,7 @@ TEST_P(OrdinatesCpu, IsReciprocalAndLinear) {
   const glm::ivec3 cells(12, 7, 19);
   const VoxelGrid voxels = make_voxels(cells, 0.3f, random_faces(cells, 0.8f, 0.1f, 21));
   const Powers a = random_powers(voxels.side_count(), 22), b = random_powers(voxels.side_count(), 23);
-  OrdinatesTransport transport(voxels, GetParam());
+  OrdinatesTransportCpu transport(voxels, GetParam());
   const Powers ka = carry(transport, a), kb = carry(transport, b);
   EXPECT_NEAR(dot_over_coverage(voxels, b, ka) / dot_over_coverage(voxels, a, kb), 1.0, 1e-6);
   Powers both(a.size());
@@ -163,7 +163,7 @@ TEST_P(OrdinatesCpu, Furnace) {
   const glm::ivec3 cells(10, 8, 13);
   const float rho = 0.8f, h = 0.2f;
   const VoxelGrid voxels = closed_box(cells, h, rho);
-  OrdinatesTransport transport(voxels, GetParam());
+  OrdinatesTransportCpu transport(voxels, GetParam());
   Powers total(voxels.side_count(), glm::vec4(0.0f)), sent(voxels.side_count());
   const glm::vec3 radiosity(glm::pi<float>());
   for (size_t i = 0; i < sent.size(); ++i) {
@@ -255,7 +255,7 @@ TEST_P(OrdinatesCpu, SameBytesForAnyNumberOfThreads) {
   std::vector<RadianceVolume> radiance;
   for (size_t threads : {1, 2, 3}) {  // three do not share octants evenly: rows of blocks are shared out too
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    OrdinatesTransport transport(voxels, GetParam());
+    OrdinatesTransportCpu transport(voxels, GetParam());
     received.push_back(carry(transport, sent));
     radiance.push_back(transport.radiance(sent));
   }
@@ -276,7 +276,7 @@ TEST_P(OrdinatesCpu, IsotropicRadiance) {
   const float h = 0.125f, radiance = 3.0f;
   const VoxelGrid voxels = closed_box(cells, h);
   const Powers sent(voxels.side_count(), glm::vec4(glm::vec3(glm::pi<float>() * radiance * h * h), 0.0f));
-  OrdinatesTransport transport(voxels, GetParam());
+  OrdinatesTransportCpu transport(voxels, GetParam());
   const RadianceVolume volume = transport.radiance(sent);
   const float expected = std::sqrt(4.0f * glm::pi<float>()) * radiance;
   EXPECT_EQ(volume.sh[0]->activeVoxelCount(), cell_count(voxels.grid()));
@@ -293,7 +293,7 @@ TEST_P(OrdinatesCpu, IsotropicRadiance) {
 }
 
 // A wall across the grid: nothing gets through, and what is dark is left out of the volume.
-TEST(OrdinatesTransport, DarkRoomStaysDark) {
+TEST(OrdinatesTransportCpu, DarkRoomStaysDark) {
   const glm::ivec3 cells(40, 16, 16);
   const VoxelGrid voxels = make_voxels(cells, 0.1f, [cells](int axis, glm::ivec3 c) {
     return c[axis] == 0 || c[axis] == cells[axis] || (axis == 0 && c.x == 19) ? 1.0f : 0.0f;
@@ -303,7 +303,7 @@ TEST(OrdinatesTransport, DarkRoomStaysDark) {
     if (shared::cell_coord(voxels.grid(), voxels.sides()[i].cell).x < 19) sent[i] = glm::vec4(1.0f);
   }
   for (OrdinateChoice choice : {OrdinateChoice{24, kStep}, OrdinateChoice{48, kCharacteristic}}) {
-    OrdinatesTransport transport(voxels, choice);
+    OrdinatesTransportCpu transport(voxels, choice);
     const Powers received = carry(transport, sent);
     for (size_t i = 0; i < sent.size(); ++i) {
       const bool lit = shared::cell_coord(voxels.grid(), voxels.sides()[i].cell).x < 19;
@@ -320,7 +320,7 @@ TEST(OrdinatesTransport, DarkRoomStaysDark) {
   }
 }
 
-TEST(OrdinatesTransport, EmptyAndTinyGrids) {
+TEST(OrdinatesTransportCpu, EmptyAndTinyGrids) {
   for (glm::ivec3 cells : {glm::ivec3(1), glm::ivec3(1, 1, 30), glm::ivec3(9, 1, 1)}) {
     const VoxelGrid voxels = closed_box(cells, 1.0f);
     const Powers sent = random_powers(voxels.side_count(), 3);

@@ -18,7 +18,7 @@ struct FirstBounce {
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area
 /// light is: the source of bounces 2 ... n of punctual light and 1 ... n of emission (docs/theory.md#composition).
-/// Twin: propagation/light_in/side_gather.h, with rays. Cost: every light, and every area light's shadow, at every
+/// Twin: propagation/light_in/side_gather_cpu.h, with rays. Cost: every light, and every area light's shadow, at every
 /// side.
 class SideGatherGl {
  public:

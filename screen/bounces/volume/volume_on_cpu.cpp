@@ -4,7 +4,7 @@
 
 #include "core/gl/readback.h"
 #include "propagation/light_in/direct_light_cpu.h"
-#include "propagation/light_in/side_gather.h"
+#include "propagation/light_in/side_gather_cpu.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"

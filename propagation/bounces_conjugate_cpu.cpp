@@ -1,7 +1,7 @@
-// Conjugate gradients over bounces: see bounces.h for the equations.
+// Conjugate gradients over bounces: see bounces_cpu.h for the equations.
 #include <algorithm>
 
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "propagation/side_loops.h"
 
 namespace volgi {
@@ -49,7 +49,7 @@ glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
 
 }  // namespace
 
-void Bounces::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
+void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const size_t count = source_.size();
   const int limit =

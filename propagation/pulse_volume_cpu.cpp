@@ -1,4 +1,4 @@
-#include "propagation/pulse_volume.h"
+#include "propagation/pulse_volume_cpu.h"
 
 #include <openvdb/openvdb.h>
 
@@ -120,7 +120,7 @@ std::vector<std::unique_ptr<LeafSurfaces>> collect_surfaces(const CellVolumes& c
 
 }  // namespace
 
-struct PulseVolume::Data {
+struct PulseVolumeCpu::Data {
   Data(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options);
 
   void inject(std::span<const glm::vec4> side_flux);
@@ -147,7 +147,7 @@ struct PulseVolume::Data {
   std::vector<std::unique_ptr<LeafSurfaces>> surfaces;  // by number of leaf, gaitatzes2010 only
 };
 
-PulseVolume::Data::Data(const VoxelGrid& v, const CellVolumes& c, const SchemeOptions& options)
+PulseVolumeCpu::Data::Data(const VoxelGrid& v, const CellVolumes& c, const SchemeOptions& options)
     : voxels(v),
       cells(c),
       scheme(options.scheme),
@@ -182,7 +182,7 @@ void look_at(const float* lobes, LeafLight& light) {
 
 }  // namespace
 
-void PulseVolume::Data::inject(std::span<const glm::vec4> side_flux) {
+void PulseVolumeCpu::Data::inject(std::span<const glm::vec4> side_flux) {
   assert(side_flux.size() == voxels.side_count());
   std::vector<std::vector<std::uint32_t>> sides_of(size_t(wave.numbers().count()));
   for (std::uint32_t i = 0; i < side_flux.size(); ++i) {
@@ -208,12 +208,13 @@ void PulseVolume::Data::inject(std::span<const glm::vec4> side_flux) {
   });
 }
 
-bool PulseVolume::Data::occupied(glm::ivec3 c) const {
+bool PulseVolumeCpu::Data::occupied(glm::ivec3 c) const {
   return shared::cell_inside(voxels.grid(), c) &&
          cells.occupancy->tree().getValue(openvdb::Coord(c.x, c.y, c.z)) > 0.0f;
 }
 
-glm::vec3 PulseVolume::Data::radiosity_of_side(std::span<const glm::vec4> side_flux, glm::ivec3 cell, int face) const {
+glm::vec3 PulseVolumeCpu::Data::radiosity_of_side(std::span<const glm::vec4> side_flux, glm::ivec3 cell,
+                                                  int face) const {
   if (!shared::cell_inside(voxels.grid(), cell)) return glm::vec3(0.0f);
   const glm::uvec2 own = voxels.cell_sides(cell);
   if (!shared::has_side(own, face)) return glm::vec3(0.0f);
@@ -224,7 +225,7 @@ glm::vec3 PulseVolume::Data::radiosity_of_side(std::span<const glm::vec4> side_f
 
 /// Largest radiosity of what sides show of the surfaces in an occupied cell: its own sides, and those of empty cells
 /// beside it.
-glm::vec3 PulseVolume::Data::reflected(std::span<const glm::vec4> side_flux, glm::ivec3 cell) const {
+glm::vec3 PulseVolumeCpu::Data::reflected(std::span<const glm::vec4> side_flux, glm::ivec3 cell) const {
   glm::vec3 most(0.0f);
   for (int face = 0; face < 6; ++face) {
     most = glm::max(most, radiosity_of_side(side_flux, cell, face));
@@ -235,7 +236,7 @@ glm::vec3 PulseVolume::Data::reflected(std::span<const glm::vec4> side_flux, glm
 }
 
 /// As printed: pulse_inject_max.comp.glsl.
-void PulseVolume::Data::inject_max(std::span<const glm::vec4> side_flux) {
+void PulseVolumeCpu::Data::inject_max(std::span<const glm::vec4> side_flux) {
   const float h = voxels.grid().cell_size_m;
   std::vector<int> leaves;
   for (auto leaf = cells.occupancy->tree().cbeginLeaf(); leaf; ++leaf) {
@@ -265,11 +266,11 @@ void PulseVolume::Data::inject_max(std::span<const glm::vec4> side_flux) {
   });
 }
 
-void PulseVolume::Data::pass() {
+void PulseVolumeCpu::Data::pass() {
   wave.step([&](int number, float* out, LeafLight& light) { pass_leaf(number, out, light); });
 }
 
-void PulseVolume::Data::pass_leaf(int number, float* out, LeafLight& light) {
+void PulseVolumeCpu::Data::pass_leaf(int number, float* out, LeafLight& light) {
   const float* beside[6];
   wave.find_beside(number, beside);
   const float* own = wave.now().leaf(number);
@@ -302,13 +303,13 @@ void PulseVolume::Data::pass_leaf(int number, float* out, LeafLight& light) {
   look_at(out, light);
 }
 
-float PulseVolume::Data::dot(const Coefficients& a, const float* lobe) const {
+float PulseVolumeCpu::Data::dot(const Coefficients& a, const float* lobe) const {
   float s = 0.0f;
   for (int k = 0; k < coefficients; ++k) s += a[size_t(k)] * lobe[k * kStride];
   return s;
 }
 
-void PulseVolume::Data::add_lobes(const Coefficients* shapes, const FacePowers& powers, float* cell) const {
+void PulseVolumeCpu::Data::add_lobes(const Coefficients* shapes, const FacePowers& powers, float* cell) const {
   for (int face = 0; face < 6; ++face) {
     if (powers[face] <= 0.0f) continue;
     for (int k = 0; k < coefficients; ++k) cell[k * kStride] += powers[face] * shapes[face][size_t(k)];
@@ -317,7 +318,7 @@ void PulseVolume::Data::add_lobes(const Coefficients* shapes, const FacePowers& 
 
 /// lpv2009: through the five faces that do not touch the neighbour, each handed on as a clamped cosine about the way
 /// out.
-void PulseVolume::Data::spread(const float* const lobes[6], float* out, float* total) const {
+void PulseVolumeCpu::Data::spread(const float* const lobes[6], float* out, float* total) const {
   FacePowers sent = {};
   for (int from = 0; from < 6; ++from) {
     if (lobes[from][0] <= 0.0f) continue;
@@ -331,8 +332,8 @@ void PulseVolume::Data::spread(const float* const lobes[6], float* out, float* t
 
 /// gaitatzes2010: into the cone from each neighbour; the occupied share is mirrored, accumulated, and sent on times the
 /// albedo.
-void PulseVolume::Data::bounce(const float* const lobes[6], const LeafSurfaces* in_leaf, int cell, int band, float* out,
-                               float* total) const {
+void PulseVolumeCpu::Data::bounce(const float* const lobes[6], const LeafSurfaces* in_leaf, int cell, int band,
+                                  float* out, float* total) const {
   const auto i = size_t(cell);
   const float occupied = in_leaf != nullptr ? in_leaf->occupancy[i] : 0.0f;
   FacePowers sent = {}, bounced = {};
@@ -350,11 +351,11 @@ void PulseVolume::Data::bounce(const float* const lobes[6], const LeafSurfaces* 
   add_lobes(tables().cone, sent, out);
 }
 
-PulseVolume::PulseVolume(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options)
+PulseVolumeCpu::PulseVolumeCpu(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options)
     : data_(std::make_unique<Data>(voxels, cells, options)) {}
-PulseVolume::~PulseVolume() = default;
+PulseVolumeCpu::~PulseVolumeCpu() = default;
 
-BounceReport PulseVolume::run(std::span<const glm::vec4> side_flux, int iterations) {
+BounceReport PulseVolumeCpu::run(std::span<const glm::vec4> side_flux, int iterations) {
   BounceReport report;
   data_->sum.clear();
   data_->injection == SchemeOptions::Injection::max ? data_->inject_max(side_flux) : data_->inject(side_flux);
@@ -364,12 +365,12 @@ BounceReport PulseVolume::run(std::span<const glm::vec4> side_flux, int iteratio
   return report;
 }
 
-RadianceVolume PulseVolume::radiance() const {
+RadianceVolume PulseVolumeCpu::radiance() const {
   // gaitatzes2010 keeps light mirrored, to be read with the surface's own normal: the other way round for -n.
   return data_->sum.radiance(data_->voxels.grid(), data_->scheme == Scheme::gaitatzes2010 ? -1.0f : 1.0f);
 }
 
-size_t PulseVolume::bytes_for(const Grid& grid, const SchemeOptions& options, size_t blocks) {
+size_t PulseVolumeCpu::bytes_for(const Grid& grid, const SchemeOptions& options, size_t blocks) {
   const LeafNumbers numbers(grid.cells);
   const int coefficients = options.sh_order == 1 ? 4 : 9;
   const bool bounces = options.scheme == Scheme::gaitatzes2010;  // light is added up where surfaces are
@@ -378,7 +379,7 @@ size_t PulseVolume::bytes_for(const Grid& grid, const SchemeOptions& options, si
          (bounces ? blocks * sizeof(LeafSurfaces) : 0);
 }
 
-size_t PulseVolume::bytes() const {
+size_t PulseVolumeCpu::bytes() const {
   size_t surfaces = 0;
   for (const auto& s : data_->surfaces) surfaces += s ? sizeof(LeafSurfaces) : 0;
   return data_->wave.bytes() + data_->sum.bytes() + surfaces;

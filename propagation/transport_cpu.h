@@ -12,9 +12,9 @@ namespace volgi {
 
 /// A scheme on the CPU: the operator that carries the power which sides send through the grid until sides receive it or
 /// it leaves. Twin of TransportGl. No result depends on the number of threads.
-class Transport {
+class TransportCpu {
  public:
-  virtual ~Transport() = default;
+  virtual ~TransportCpu() = default;
   /// Starts an order. @param sent  power per side (rgb) [W], >= 0; w is not looked at. Need not outlive the call.
   virtual void begin(std::span<const glm::vec4> sent) = 0;
   /// Carries the order on, by at most `max_passes` passes over the volume.
@@ -42,7 +42,7 @@ class Transport {
 /// @param voxels       must outlive the transport.
 /// @param half_voxels  the same scene in cells of twice the edge, for the coarse part of `conservative` (may be null).
 /// @throws Error(usage) for a number of directions that there is not, and for schemes that do not carry sides.
-std::unique_ptr<Transport> make_transport(const VoxelGrid& voxels, const SchemeOptions& options,
-                                          const VoxelGrid* half_voxels = nullptr);
+std::unique_ptr<TransportCpu> make_transport(const VoxelGrid& voxels, const SchemeOptions& options,
+                                             const VoxelGrid* half_voxels = nullptr);
 
 }  // namespace volgi

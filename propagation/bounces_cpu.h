@@ -4,7 +4,7 @@
 
 #include "propagation/bounce_rules.h"
 #include "propagation/side_flux.h"
-#include "propagation/transport.h"
+#include "propagation/transport_cpu.h"
 
 namespace volgi {
 
@@ -18,20 +18,20 @@ namespace volgi {
 /// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (docs/theory.md#orders). Every step's K d is added
 /// up into P, which makes P = K(e + v) of the sought v = fP: one plain bounce from v, also where f = 0, at no cost. The
 /// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
-class Bounces {
+class BouncesCpu {
  public:
-  explicit Bounces(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
+  explicit BouncesCpu(std::unique_ptr<TransportCpu> transport) : transport_(std::move(transport)) {}
 
   /// @throws Error(usage) as BounceRules::check.
   BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules);
   /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
-  void set_transport(std::unique_ptr<Transport> transport);
+  void set_transport(std::unique_ptr<TransportCpu> transport);
 
   const std::vector<glm::vec4>& received_direct() const { return received_direct_; }  // emission's first arrival [W]
   const std::vector<glm::vec4>& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
   /// Power per side sent in all orders [W]: what the radiance in free space follows from.
   std::vector<glm::vec4> sent(const VoxelGrid& voxels, const SideFlux& flux) const;
-  Transport& transport() const { return *transport_; }
+  TransportCpu& transport() const { return *transport_; }
   /// Of the powers of so many sides; the transport's own are apart.
   static size_t bytes_for(size_t sides) { return 6 * sizeof(glm::vec4) * sides; }
 
@@ -56,7 +56,7 @@ class Bounces {
   void begin_order(const Run& run);
   void amortised(const Run& run, BounceReport& report);
 
-  std::unique_ptr<Transport> transport_;
+  std::unique_ptr<TransportCpu> transport_;
   Powers received_direct_, received_indirect_;
   Powers response_;                  // rgb: returned fraction f, w: coverage tau
   Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]
@@ -70,6 +70,6 @@ class Bounces {
 struct SideIrradiance {
   std::vector<glm::vec4> direct, indirect;  // rgb; w is 1
 };
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const Bounces& bounces);
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces);
 
 }  // namespace volgi

@@ -1,4 +1,4 @@
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +21,7 @@ glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
 
 }  // namespace
 
-void Bounces::make_room(const Run& run) {
+void BouncesCpu::make_room(const Run& run) {
   const size_t count = run.voxels.side_count();
   const bool continues = run.rules.continues() && received_indirect_.size() == count;
   if (!continues) {
@@ -47,7 +47,8 @@ void Bounces::make_room(const Run& run) {
   });
 }
 
-BounceReport Bounces::run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules) {
+BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission,
+                             const BounceRules& rules) {
   rules.check(transport_->linear());
   const Run run{voxels, flux, has_emission, rules};
   make_room(run);
@@ -69,12 +70,12 @@ BounceReport Bounces::run(const VoxelGrid& voxels, const SideFlux& flux, bool ha
   return report;
 }
 
-void Bounces::set_transport(std::unique_ptr<Transport> transport) {
+void BouncesCpu::set_transport(std::unique_ptr<TransportCpu> transport) {
   transport_ = std::move(transport);
   in_flight_ = false;
 }
 
-void Bounces::carry(const Powers& sent, const BounceRules& rules, BounceReport& report) {
+void BouncesCpu::carry(const Powers& sent, const BounceRules& rules, BounceReport& report) {
   const auto start = std::chrono::steady_clock::now();
   received_.assign(sent.size(), glm::vec4(0.0f));
   transport_->carry(sent, received_, rules, report);
@@ -83,12 +84,12 @@ void Bounces::carry(const Powers& sent, const BounceRules& rules, BounceReport& 
   }
 }
 
-void Bounces::send_emission(const Run& run) {
+void BouncesCpu::send_emission(const Run& run) {
   for_each_side(sent_.size(),
                 [&](size_t i) { sent_[i] = glm::vec4(sent_power(run.voxels.sides()[i], run.flux.emitted[i]), 0.0f); });
 }
 
-void Bounces::arrival_of_emission(const Run& run, BounceReport& report) {
+void BouncesCpu::arrival_of_emission(const Run& run, BounceReport& report) {
   BounceRules by_itself = run.rules;
   if (by_itself.together()) by_itself.iterations.reset();
   send_emission(run);
@@ -99,7 +100,7 @@ void Bounces::arrival_of_emission(const Run& run, BounceReport& report) {
 
 /// What sides send before bounces. @return what of the last run's answer is the start: as much as the sources have
 /// become of what they were, so that lights that were dimmed or put out leave nothing to take back.
-glm::vec4 Bounces::set_source(const Run& run) {
+glm::vec4 BouncesCpu::set_source(const Run& run) {
   for_each_side(source_.size(), [&](size_t i) {
     const glm::vec3 returned = glm::vec3(response_[i]) * glm::vec3(received_direct_[i]);
     source_[i] = glm::vec4(returned + sent_power(run.voxels.sides()[i], run.flux.punctual[i]), 0.0f);
@@ -114,7 +115,7 @@ glm::vec4 Bounces::set_source(const Run& run) {
 }
 
 /// One order after another, from black: the series K e + K f K e + ...
-void Bounces::orders(const Run& run, int limit, BounceReport& report) {
+void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const bool together = transport_->iterative() && rules.together();
   if (rules.iterations && !transport_->iterative()) limit = std::min(limit, *rules.iterations);
@@ -137,14 +138,14 @@ void Bounces::orders(const Run& run, int limit, BounceReport& report) {
   }
 }
 
-void Bounces::send_all() {
+void BouncesCpu::send_all() {
   for_each_side(sent_.size(), [&](size_t i) {
     sent_[i] = source_[i] + glm::vec4(glm::vec3(response_[i]) * glm::vec3(received_indirect_[i]), 0.0f);
   });
 }
 
 /// P becomes what has been received. @return what that changes of what sides send [W].
-glm::dvec3 Bounces::publish() {
+glm::dvec3 BouncesCpu::publish() {
   const glm::dvec3 change = sum_over_sides(received_.size(), [&](size_t i) {
     return glm::dvec3(response_[i]) * glm::abs(glm::dvec3(received_[i]) - glm::dvec3(received_indirect_[i]));
   });
@@ -153,7 +154,7 @@ glm::dvec3 Bounces::publish() {
 }
 
 /// P <- K(e + fP) until that changes nothing any more.
-void Bounces::renewals(const Run& run, glm::vec4 share, BounceReport& report) {
+void BouncesCpu::renewals(const Run& run, glm::vec4 share, BounceReport& report) {
   for (glm::vec4& power : received_indirect_) power *= share;
   const glm::vec3 emission = report.sent;
   const glm::vec3 emission_left = report.left;
@@ -168,7 +169,7 @@ void Bounces::renewals(const Run& run, glm::vec4 share, BounceReport& report) {
   }
 }
 
-void Bounces::begin_order(const Run& run) {
+void BouncesCpu::begin_order(const Run& run) {
   arrival_in_flight_ = run.has_emission && orders_begun_ % run.rules.arrival_cycle(transport_->iterative()) == 0;
   ++orders_begun_;
   if (arrival_in_flight_) {
@@ -183,7 +184,7 @@ void Bounces::begin_order(const Run& run) {
 }
 
 /// As many passes as there may be; an order that is not at its end then goes on in the next run.
-void Bounces::amortised(const Run& run, BounceReport& report) {
+void BouncesCpu::amortised(const Run& run, BounceReport& report) {
   const int limit = *run.rules.passes_per_run;
   while (report.passes < limit) {
     if (!in_flight_) begin_order(run);
@@ -207,7 +208,7 @@ void Bounces::amortised(const Run& run, BounceReport& report) {
   }
 }
 
-std::vector<glm::vec4> Bounces::sent(const VoxelGrid& voxels, const SideFlux& flux) const {
+std::vector<glm::vec4> BouncesCpu::sent(const VoxelGrid& voxels, const SideFlux& flux) const {
   std::vector<glm::vec4> all(voxels.side_count());
   for_each_side(all.size(), [&](size_t i) {
     const glm::vec3 received = glm::vec3(received_direct_[i]) + glm::vec3(received_indirect_[i]);

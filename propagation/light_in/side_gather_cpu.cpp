@@ -1,4 +1,4 @@
-#include "propagation/light_in/side_gather.h"
+#include "propagation/light_in/side_gather_cpu.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,5 +1,5 @@
 // Sides lit by virtual lights, and what the volume makes of it: the first bounce belongs to the screen.
-#include "propagation/light_in/side_gather.h"
+#include "propagation/light_in/side_gather_cpu.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>

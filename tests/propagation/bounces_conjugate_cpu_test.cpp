@@ -1,7 +1,7 @@
 // Conjugate gradients over bounces: how few passes they take, and what they do where there is little or no answer.
 #include <gtest/gtest.h>
 
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "tests/propagation/cpu_rooms.h"
 
 namespace volgi::test {
@@ -36,13 +36,13 @@ TEST(ConjugateGradients, FewPasses) {
     const SideFlux flux = ceiling_light(voxels, 0, glm::vec3(1.0f));
     BounceRules rules;
     rules.largest_albedo = c.rho;
-    Bounces whole(std::make_unique<StepTransport>(voxels, 24));
+    BouncesCpu whole(std::make_unique<StepTransport>(voxels, 24));
     const BounceReport report = whole.run(voxels, flux, false, rules);
     EXPECT_TRUE(report.converged);
     rules.warm_start = true;
     for (int k = 0; k < 3; ++k) whole.run(voxels, flux, false, rules);
     const auto error_after = [&](int passes) {
-      Bounces part(std::make_unique<StepTransport>(voxels, 24));
+      BouncesCpu part(std::make_unique<StepTransport>(voxels, 24));
       BounceRules some = rules;
       some.solver = Solver::conjugate_gradients;
       some.iterations = passes;
@@ -67,7 +67,7 @@ TEST(ConjugateGradients, FewPassesThroughVeils) {
     side.area_m2 *= side.coverage;
   }
   const VoxelGrid voxels(rooms.grid(), sides);
-  Bounces bounces(std::make_unique<StepTransport>(voxels, 24));
+  BouncesCpu bounces(std::make_unique<StepTransport>(voxels, 24));
   BounceRules rules;
   rules.largest_albedo = 0.99f;
   EXPECT_LE(bounces.run(voxels, ceiling_light(voxels, 0, glm::vec3(1.0f)), false, rules).passes, 13);
@@ -76,7 +76,7 @@ TEST(ConjugateGradients, FewPassesThroughVeils) {
 // Where a lamp is put out far from one that is lit, the last step leaves a little less than nothing: clamped.
 TEST(ConjugateGradients, NeverNegative) {
   const VoxelGrid voxels = rooms_in_a_row(5, 8, glm::vec3(0.7f));
-  Bounces bounces(std::make_unique<StepTransport>(voxels, 24));
+  BouncesCpu bounces(std::make_unique<StepTransport>(voxels, 24));
   BounceRules rules;
   rules.largest_albedo = 0.7f;
   rules.warm_start = true;
@@ -87,7 +87,7 @@ TEST(ConjugateGradients, NeverNegative) {
 // A white box has no answer: what comes is finite.
 TEST(ConjugateGradients, WhiteBoxStaysFinite) {
   const VoxelGrid voxels = rooms_in_a_row(1, 4, glm::vec3(1.0f));
-  Bounces bounces(std::make_unique<StepTransport>(voxels, 8));
+  BouncesCpu bounces(std::make_unique<StepTransport>(voxels, 8));
   BounceRules rules;
   rules.largest_albedo = 1.0f;
   bounces.run(voxels, ceiling_light(voxels, 0, glm::vec3(1e9f)), false, rules);

@@ -1,5 +1,5 @@
 // The papers' schemes on the CPU, against closed forms and a plain pass in double precision.
-#include "propagation/pulse_volume.h"
+#include "propagation/pulse_volume_cpu.h"
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Orders, Papers, testing::Values(1, 2));
 TEST_P(Papers, LpvSendsThroughFiveFaces) {
   const OneSide one({20, 20, 20}, {7, 10, 10});  // the cell ahead is in the next leaf
   const CellVolumes cells = no_surfaces();
-  PulseVolume volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
+  PulseVolumeCpu volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
   const BounceReport report = volume.run(one.flux, 1);
   EXPECT_EQ(report.passes, 1);
   EXPECT_NEAR(report.sent.x, 1.0f, 1e-6f);
@@ -93,12 +93,12 @@ TEST_P(Papers, LpvSendsThroughFiveFaces) {
 TEST_P(Papers, LpvKnowsNoWalls) {
   const OneSide one({16, 16, 16}, {4, 8, 8});
   CellVolumes cells = no_surfaces();
-  PulseVolume free_volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
+  PulseVolumeCpu free_volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
   free_volume.run(one.flux, 8);
   for (int y = 0; y < 16; ++y) {
     for (int z = 0; z < 16; ++z) occupy(cells, {7, y, z}, 1.0f, glm::vec3(0.5f), {-1.0f, 0.0f, 0.0f});
   }
-  PulseVolume volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
+  PulseVolumeCpu volume(one.voxels, cells, options_of(Scheme::lpv2009, order()));
   volume.run(one.flux, 8);
   EXPECT_EQ(total(volume.radiance(), 0), total(free_volume.radiance(), 0));
 }
@@ -119,7 +119,7 @@ TEST_P(Papers, GaitatzesMirrorsOnAWall) {
       for (int z = 0; z < 20; ++z)
         occupy(cells, {8, y, z}, 0.75f, {0.6f, 0.5f, 0.4f}, glm::normalize(glm::vec3(side, 0.3f, -0.2f)));
     }
-    PulseVolume volume(one.voxels, cells, options_of(Scheme::gaitatzes2010, order()));
+    PulseVolumeCpu volume(one.voxels, cells, options_of(Scheme::gaitatzes2010, order()));
     volume.run(one.flux, 2);
     const RadianceVolume radiance = volume.radiance();
     // Only the cell ahead, two passes on, has seen light from -x; those beside it what their neighbours sent sideways.
@@ -145,7 +145,7 @@ TEST_P(Papers, GaitatzesSendsBouncesOnTimesTheAlbedo) {
     }
     SchemeOptions options = options_of(Scheme::gaitatzes2010, order());
     options.constant_albedo = constant;
-    PulseVolume volume(one.voxels, cells, options);
+    PulseVolumeCpu volume(one.voxels, cells, options);
     volume.run(one.flux, 1);
     const double straight_back = value_at(volume.radiance(), 0, {5, 10, 10});
     const double first = value_at(volume.radiance(), 0, {7, 10, 10});
@@ -162,7 +162,7 @@ TEST_P(Papers, GaitatzesSendsBouncesOnTimesTheAlbedo) {
         occupy(black, {5, y, z}, 1.0f, glm::vec3(constant ? 0.5f : 0.9f, 0.0f, 0.0f), {1.0f, 0.0f, 0.0f});
       }
     }
-    PulseVolume without(one.voxels, black, options_of(Scheme::gaitatzes2010, order()));
+    PulseVolumeCpu without(one.voxels, black, options_of(Scheme::gaitatzes2010, order()));
     without.run(one.flux, 3);
     EXPECT_NEAR(value_at(volume.radiance(), 0, {5, 10, 10}) - value_at(without.radiance(), 0, {5, 10, 10}), from_ahead,
                 2e-5);
@@ -178,11 +178,11 @@ TEST_P(Papers, RunsAreIndependent) {
     occupy(cells, shared::cell_coord(voxels.grid(), side.cell), side.coverage, side.albedo, side.normal);
   const Powers flux = random_powers(voxels.side_count(), 4);
   for (const Scheme scheme : {Scheme::lpv2009, Scheme::gaitatzes2010}) {
-    PulseVolume volume(voxels, cells, options_of(scheme, order()));
+    PulseVolumeCpu volume(voxels, cells, options_of(scheme, order()));
     volume.run(flux, 5);
     const BounceReport again = volume.run(flux, 9);
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 1);
-    PulseVolume fresh(voxels, cells, options_of(scheme, order()));
+    PulseVolumeCpu fresh(voxels, cells, options_of(scheme, order()));
     const BounceReport report = fresh.run(flux, 9);
     EXPECT_EQ(again.left, report.left);
     const RadianceVolume a = volume.radiance(), b = fresh.radiance();

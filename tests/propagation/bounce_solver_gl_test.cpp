@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "propagation/bounces.h"
+#include "propagation/bounces_cpu.h"
 #include "propagation/bounces_gl.h"
 #include "propagation/side_irradiance_gl.h"
 #include "propagation/transport_conservative_gl.h"
@@ -68,7 +68,7 @@ class SolverGl : public GlTest {
   std::unique_ptr<TransportGl> ordinates() {
     return std::make_unique<OrdinatesTransportGl>(unit_grid(10), kDirections);
   }
-  Bounces twin() { return Bounces(std::make_unique<StepTransport>(cpu_voxels_, kDirections)); }
+  BouncesCpu twin() { return BouncesCpu(std::make_unique<StepTransport>(cpu_voxels_, kDirections)); }
   BounceReport run(BouncesGl& bounces) {
     gl::PassTimer timer(context().software(), false);
     return bounces.run(voxels_->voxels(), *flux_, true, rules_, timer);
@@ -101,7 +101,7 @@ TEST_F(SolverGl, ConjugateGradientsAsOnTheCpu) {
   for (float scale : {1.0f, 1e-6f, 1e9f}) {
     light(glm::vec3(scale, scale, 0.0f));
     BouncesGl gpu(ordinates());
-    Bounces cpu = twin();
+    BouncesCpu cpu = twin();
     const BounceReport a = run(gpu), b = cpu.run(cpu_voxels_, cpu_flux_, true, rules_);
     EXPECT_TRUE(a.converged && a.conjugate_gradients);
     EXPECT_EQ(a.orders, b.orders);
@@ -157,7 +157,7 @@ TEST_F(SolverGl, AmortisedRunsAsOnTheCpu) {
     rules_.passes_per_run = passes;
     light(glm::vec3(1.0f));
     BouncesGl gpu(ordinates());
-    Bounces cpu = twin();
+    BouncesCpu cpu = twin();
     for (int k = 0; k < 6; ++k) {
       if (k == 3) light(glm::vec3(0.5f, 1.0f, 2.0f));
       EXPECT_EQ(run(gpu).passes, passes);
@@ -203,7 +203,7 @@ TEST_F(SolverGl, IrradianceAsOnTheCpu) {
   light(glm::vec3(1.0f));
   rules_.bounces = 3;
   BouncesGl gpu(ordinates());
-  Bounces cpu = twin();
+  BouncesCpu cpu = twin();
   run(gpu);
   cpu.run(cpu_voxels_, cpu_flux_, true, rules_);
   gl::PassTimer timer(context().software(), false);

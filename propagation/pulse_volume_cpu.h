@@ -14,12 +14,12 @@ namespace volgi {
 /// The papers' schemes on the CPU, `lpv2009` and `gaitatzes2010`, as printed: a pulse injected once, reflections in
 /// flight, what passes (lpv2009) or bounces (gaitatzes2010) accumulated as spherical harmonics per cell. They know
 /// neither sides nor orders (docs/theory.md#papers). Twin of PulseVolumeGl.
-class PulseVolume {
+class PulseVolumeCpu {
  public:
   /// @param cells  occupancy, normal and albedo for gaitatzes2010, emission for its injection by MAX; must outlive
   /// this.
-  PulseVolume(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options);
-  ~PulseVolume();
+  PulseVolumeCpu(const VoxelGrid& voxels, const CellVolumes& cells, const SchemeOptions& options);
+  ~PulseVolumeCpu();
 
   /// Injects the flux of sides, as options.injection says (flux: as cosine lobes about their normals, into the cells
   /// that see them; max: without that of emission, which the cells have), and runs `iterations` passes.
