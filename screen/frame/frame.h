@@ -21,9 +21,8 @@ namespace volgi::screen {
 class Frame {
  public:
   /// The recipe that options.recipe names, or the default one.
-  /// @throws Error(usage) as find_recipe() and plan_picture() do; as its stages do: of grids, options that make no
-  /// sense
-  ///   together, Error(over_limit) above memory limits.
+  /// @throws Error(usage) as find_recipe(), plan_picture() and the stages do (grids, options that make no sense
+  ///   together), Error(over_limit) above memory limits.
   Frame(const Scene& scene, const FrameOptions& options);
   /// A recipe of one's own. @param recipe  copied; its stage types must outlive the frame.
   Frame(const Scene& scene, const FrameOptions& options, Recipe recipe);

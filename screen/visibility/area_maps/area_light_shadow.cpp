@@ -6,10 +6,10 @@
 
 namespace volgi::screen {
 
-std::unique_ptr<AreaLightShadow> AreaLightShadow::make(Method method, int resolution, int layers) {
+std::unique_ptr<AreaLightShadow> AreaLightShadow::make(Method method, Filter filter, int resolution, int layers) {
   switch (method) {
     case Method::convolution:
-      return std::make_unique<ConvolutionShadow>(resolution, layers);
+      return std::make_unique<ConvolutionShadow>(resolution, layers, filter);
     case Method::percentage_closer:
       return std::make_unique<PercentageCloserShadow>();
     case Method::single:

@@ -19,7 +19,12 @@ class AreaLightShadow {
     percentage_closer,  // the same maps, compared depths averaged over the penumbra's filter
     single,             // the same maps, one comparison: hard
   };
-  static std::unique_ptr<AreaLightShadow> make(Method method, int resolution, int layers);
+  /// Width of convolution's filters in the map.
+  enum class Filter {
+    map,      // of the angle by the map's scale there, 4 / (1 + r^2) a width
+    printed,  // Dong et al. 2009, §4.2: the angle over pi, wherever in the map
+  };
+  static std::unique_ptr<AreaLightShadow> make(Method method, Filter filter, int resolution, int layers);
 
   virtual ~AreaLightShadow() = default;
   /// Filters the maps for this frame.

@@ -7,6 +7,8 @@ namespace volgi::screen {
 namespace {
 
 constexpr const char* SHADOWS[] = {"convolution", "percentage_closer", "single"};
+constexpr const char* FILTERS[] = {"map", "printed"};
+constexpr const char* POSITIONS[] = {"nearest", "mean"};
 
 constexpr Parameter PARAMETERS[] = {
     number<VirtualAreaLightOptions>(
@@ -16,6 +18,12 @@ constexpr Parameter PARAMETERS[] = {
     choice<AreaMapOptions>(
         {"val.shadow", "", "convolution soft shadow maps, percentage-closer, or one comparison with the map"}, SHADOWS,
         [](AreaMapOptions& o) -> auto& { return o.shadow; }),
+    choice<AreaMapOptions>(
+        {"val.filter", "", "width of convolution's filters: by the map's scale, or an angle over pi as Dong has it"},
+        FILTERS, [](AreaMapOptions& o) -> auto& { return o.filter; }),
+    choice<VirtualAreaLightOptions>(
+        {"val.position", "", "of a cluster: of its light nearest to the mean, or the mean as Dong has it"}, POSITIONS,
+        [](VirtualAreaLightOptions& o) -> auto& { return o.position; }),
     number<AreaMapOptions>(
         {"val.map", "texels", "on a side of an area light's map"}, {16, 4096},
         [](AreaMapOptions& o) -> auto& { return o.texels; }),
@@ -30,7 +38,8 @@ class AreaMapsStage : public Stage {
   explicit AreaMapsStage(const StageContext& context)
       : area_lights_(context.options.of<VirtualAreaLightOptions>()),
         maps_(context.options.of<AreaMapOptions>().texels, area_lights_.count()),
-        shadow_(AreaLightShadow::make(context.options.of<AreaMapOptions>().shadow, maps_.resolution(),
+        shadow_(AreaLightShadow::make(context.options.of<AreaMapOptions>().shadow,
+                                      context.options.of<AreaMapOptions>().filter, maps_.resolution(),
                                       area_lights_.count())) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {

@@ -15,8 +15,9 @@ gl::Texture mipmapped(GLenum format, int resolution, int layers) {
 
 }  // namespace
 
-ConvolutionShadow::ConvolutionShadow(int resolution, int layers, BasisFormat format)
-    : format_(format),
+ConvolutionShadow::ConvolutionShadow(int resolution, int layers, Filter filter, BasisFormat format)
+    : filter_(filter),
+      format_(format),
       basis_(mipmapped(format == BasisFormat::rgba8 ? GL_RGBA8 : GL_RGBA16, resolution, 2 * layers)),
       basis_depth_(mipmapped(GL_RGBA16, resolution, 2 * layers)),
       depth_(mipmapped(GL_R32F, resolution, layers)),
@@ -46,7 +47,8 @@ void ConvolutionShadow::run(const ParaboloidDepthMaps& maps, gl::PassTimer& time
   for (const gl::Texture* t : {&basis_, &basis_depth_, &depth_}) glGenerateTextureMipmap(t->id());
 }
 
-void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program&) const {
+void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program& program) const {
+  program.set("filter_as_printed", int(filter_ == Filter::printed));
   basis_.bind(8);
   basis_depth_.bind(9);
   depth_.bind(10);

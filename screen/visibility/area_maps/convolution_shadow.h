@@ -5,7 +5,7 @@ namespace volgi::screen {
 
 /// Pass "screen/visibility/area_maps/convolution_shadow": Fourier basis images of the depth maps and their mipmaps.
 /// Dong et al. 2009, §4; we depart: the step is sharpened, depths are normalised by what each layer sees, the filter
-/// follows the map's own scale (shaders/screen/visibility/area_maps/convolution_basis.glsl and
+/// follows the map's own scale unless Filter::printed (shaders/screen/visibility/area_maps/convolution_basis.glsl and
 /// convolution_shadow.glsl). Cost: 16 terms a texel; a look-up reads seven filtered texels.
 class ConvolutionShadow final : public AreaLightShadow {
  public:
@@ -13,7 +13,7 @@ class ConvolutionShadow final : public AreaLightShadow {
   enum class BasisFormat { rgba8, rgba16 };
   /// Basis: 8 bits as in the paper, unless asked for more. Basis times depth: 16 bits (there half floats), depth:
   /// float.
-  ConvolutionShadow(int resolution, int layers, BasisFormat format = BasisFormat::rgba8);
+  ConvolutionShadow(int resolution, int layers, Filter filter = Filter::map, BasisFormat format = BasisFormat::rgba8);
 
   void run(const ParaboloidDepthMaps& maps, gl::PassTimer& timer) override;
   std::string define() const override { return "AREA_LIGHT_SHADOW_CONVOLUTION"; }
@@ -21,6 +21,7 @@ class ConvolutionShadow final : public AreaLightShadow {
   size_t bytes() const override;
 
  private:
+  Filter filter_;
   BasisFormat format_;
   gl::Texture basis_, basis_depth_, depth_, farthest_;
   gl::Program range_program_, basis_program_;

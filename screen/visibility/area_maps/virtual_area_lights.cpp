@@ -48,6 +48,7 @@ VirtualAreaLights::VirtualAreaLights(const VirtualAreaLightOptions& options)
   seed_.set("max_iterations", kMaxIterations);
   assign_.set("weight_per_rad", options_.normal_weight / glm::pi<float>());
   list_.set("cluster_count", options_.count);
+  shape_.set("at_mean", int(options_.position == VirtualAreaLightOptions::Position::mean));
 }
 
 void VirtualAreaLights::run(const VirtualLights& lights, float scene_diagonal_m, gl::PassTimer& timer) {

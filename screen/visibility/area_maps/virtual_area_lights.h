@@ -13,13 +13,17 @@ struct VirtualAreaLightOptions {
   int count = 64;                // M, up to MAX_VIRTUAL_AREA_LIGHTS
   float position_weight = 0.7f;  // w_x, of the distance over the scene's diagonal
   float normal_weight = 0.3f;    // w_alpha, of the angle over pi
+  enum class Position {
+    nearest,  // of the cluster's light that is nearest to the mean of all
+    mean,     // as printed (§5): may lie inside what the lights lie on
+  } position = Position::nearest;
 };
 
 /// Pass "screen/visibility/area_maps/virtual_area_lights": k-means of all virtual lights (reflected and emitted) into
 /// area lights, restarted every frame from light k N / M, or the next that has flux and is free (Dong et al. 2009, §5
 /// and §6). Deterministic: sums have a fixed order. Lights without flux belong to no cluster; none is left empty at the
-/// start while there are lights with flux. A cluster's position is that of its light nearest to their mean. Rectangles
-/// lie along the world's X as seen on their plane, within 45 degrees of X along its Y
+/// start while there are lights with flux. A cluster's position is that of its light nearest to their mean, or the
+/// mean itself. Rectangles lie along the world's X as seen on their plane, within 45 degrees of X along its Y
 /// (shaders/screen/visibility/area_maps/virtual_area_lights_shape.comp.glsl). Cost: lights times clusters, a few times
 /// over.
 class VirtualAreaLights {

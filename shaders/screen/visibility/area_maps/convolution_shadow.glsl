@@ -5,6 +5,7 @@ layout(binding = 8) uniform sampler2DArray shadow_basis;
 layout(binding = 9) uniform sampler2DArray shadow_basis_depth;
 layout(binding = 10) uniform sampler2DArray shadow_depth;
 layout(binding = 11) uniform sampler2D shadow_farthest;
+uniform bool filter_as_printed;  // ConvolutionShadow::Filter
 
 // Sum over the series' terms for what a filtered texel holds: 2/pi sum (sin z cos d - cos z sin d) / (2k - 1).
 float step_sum(sampler2DArray images, vec2 uv, int layer, float level, float d) {
@@ -35,7 +36,8 @@ float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
   vec2 disk = paraboloid_from_direction(receiver.position / receiver_m);
   vec2 uv = disk * 0.5 + 0.5;
   float texel = texel_angle(disk, resolution);
-  float width_per_angle = 1.0 / (texel * float(resolution));  // the paper has 1/pi everywhere; this is the map's own
+  // Of the map's whole width: the map's own scale here, or Dong's w = alpha/pi everywhere.
+  float width_per_angle = filter_as_printed ? 1.0 / PI : 1.0 / (texel * float(resolution));
 
   // The first filter: the angle that the light is seen under.
   float angle = max(atan(light.size_m / receiver_m), texel);

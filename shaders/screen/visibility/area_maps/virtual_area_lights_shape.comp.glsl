@@ -7,6 +7,8 @@
 layout(std430, binding = 4) buffer AreaLights { VirtualAreaLight area_lights[]; };
 layout(std430, binding = 5) readonly buffer Order { uint order[]; };
 
+uniform bool at_mean;  // VirtualAreaLightOptions::position
+
 #define FAR 3.0e38
 
 uint t = gl_LocalInvocationIndex;
@@ -67,7 +69,8 @@ void main() {
   flux = sum_of_group(flux);
   float sum = length(normal);
   if (count > 1) normal = sum > 1e-3 * float(count) ? normal / sum : centers[cluster].normal;
-  vec3 middle = nearest_light(position.xyz / float(count));
+  vec3 middle = position.xyz / float(count);
+  if (!at_mean) middle = nearest_light(middle);
   vec3 right = right_of(normal);
   vec2 edges = rectangle(middle, right, cross(normal, right));
   if (t != 0u) return;

@@ -151,6 +151,18 @@ TEST_F(VirtualAreaLights, AreThoseOfAPlainKMeans) {
   }
 }
 
+TEST_F(VirtualAreaLights, AtTheMeanAsPrinted) {
+  const auto lights = lights_in_room(glm::normalize(glm::dvec3(0.2, -1.0, -0.5)), 100.0, 1024);
+  screen::VirtualAreaLights pass({.count = 30, .position = screen::VirtualAreaLightOptions::Position::mean});
+  const Clusters c = cluster(context(), pass, lights);
+  const PlainKMeans plain(lights, 30, kDiagonal, screen::VirtualAreaLights::kMaxIterations);
+  for (size_t k = 0; k < c.area_lights.size(); ++k) {
+    if (c.area_lights[k].light_count == 0) continue;
+    EXPECT_LT(glm::distance(glm::dvec3(c.area_lights[k].position), plain.means()[k]), 1e-5) << k;
+    expect_sums(c.area_lights[k], c, lights);
+  }
+}
+
 TEST_F(VirtualAreaLights, AsManyAsLightsAreTheLights) {
   const auto lights = lights_in_room({0.0, -1.0, 0.0}, 60.0, 500);
   const Clusters c = cluster(context(), 500, lights);
