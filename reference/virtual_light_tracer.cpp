@@ -55,6 +55,20 @@ std::vector<GatheredLight> lights_of(const VirtualLightList& list, const Scene& 
   return out;
 }
 
+// Form factor from a point to a disk of the radius r, over its area [m^-2]: a parallel point (Howell, B-13) and an
+// upright one that is turned to the axis (B-14), in the shares of the point's own normal. The point is `height` over
+// the disk's plane; the disk's middle is `along` over the point's horizon.
+double disk_to_point(double height, double along, double facing, double squared, double area_m2) {
+  const double r2 = area_m2 / kPi;
+  if (r2 < 1e-9 * squared) return height * along / (kPi * squared * squared);
+  const double across = 2.0 * std::sqrt(r2 * std::max(squared - height * height, 0.0)), sum = squared + r2;
+  const double root = std::sqrt(std::max((sum - across) * (sum + across), 0.0));
+  if (!(root > 0.0)) return 0.5 * std::max(facing, 0.0) / area_m2;  // on the rim
+  const double parallel = 0.5 * (1.0 - (squared - r2) / root);
+  const double upright = 2.0 * height * r2 / (root * (sum + root));  // over the distance from the axis
+  return std::clamp(facing * parallel + (along - facing * height) * upright, 0.0, 1.0) / area_m2;
+}
+
 // Irradiance at the vertex per unit of flux, as if nothing were in between.
 double irradiance_per_flux(const PathVertex& vertex, const GatheredLight& light) {
   const glm::dvec3 between = light.position - glm::dvec3(vertex.surface.position);
@@ -64,7 +78,8 @@ double irradiance_per_flux(const PathVertex& vertex, const GatheredLight& light)
   // Both normals of the vertex decide which side light is on; also nothing where the two points are one.
   if (!(at_light > 0.0) || !(at_vertex > 0.0) || !(glm::dot(glm::dvec3(vertex.geometric_normal), between) > 0.0))
     return 0.0;
-  return at_light / squared * at_vertex / (kPi * squared + light.area_m2);
+  const double facing = -glm::dot(light.normal, glm::dvec3(vertex.shading_normal));
+  return disk_to_point(at_light, at_vertex, facing, squared, light.area_m2);
 }
 
 struct GatheredRadiance {

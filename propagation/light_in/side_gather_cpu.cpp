@@ -8,6 +8,7 @@
 #include "core/octahedral.h"
 #include "core/surface.h"
 #include "propagation/side_loops.h"
+#include "shaders/shared/disk_to_point.shared.h"
 
 namespace volgi {
 
@@ -110,8 +111,8 @@ glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start
     return glm::vec3(0.0f);
   }
   const float squared = glm::dot(to_light, to_light);
-  const float cosines = along_side * along_light / squared;
-  return light.flux * (cosines / (glm::pi<float>() * squared + light.area_m2));
+  const float facing = -glm::dot(light.normal, side.normal);
+  return light.flux * shared::disk_to_point(along_light, along_side, facing, squared, light.area_m2);
 }
 
 glm::vec3 irradiance_of_sublight(const EmbreeScene& embree, const Side& side, const Start& start,
@@ -123,8 +124,7 @@ glm::vec3 irradiance_of_sublight(const EmbreeScene& embree, const Side& side, co
 /// Share of a disk's light at a point that comes from itself and not from what it consists of.
 float far_share_at(glm::vec3 point, glm::vec3 position, float area_m2, float zone) {
   const glm::vec3 way = position - point;
-  const float squared = glm::dot(way, way);
-  return shared::far_share(squared / (glm::pi<float>() * squared + area_m2 + 1e-30f), zone);
+  return shared::far_share(shared::disk_nearness(glm::dot(way, way), area_m2), zone);
 }
 
 /// Of a light's sub-lights: its coarse ones, and nearer by half the fine ones of those. As near_lights.comp.glsl has

@@ -34,9 +34,9 @@ struct VirtualLightsForSides {
   float near_zone = 0.0f;  // areas of a light (shared::far_share)
 };
 
-/// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi cos_side cos_light / (pi d^2 + A) over
-/// those that a ray from the side's surface reaches. A side takes every stride-th light, `stride` times as bright. Such
-/// a light stands for stride A of surface, too, but a side cannot tell apart what is nearer together than it is large:
+/// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi times shared::disk_to_point over those
+/// that a ray from the side's surface reaches. A side takes every stride-th light, `stride` times as bright. Such a
+/// light stands for stride A of surface, too, but a side cannot tell apart what is nearer together than it is large:
 /// its own area is the most that is added, which takes the peaks off single sides. Where lights have sub-lights, a side
 /// near one takes those instead, of every light and with rays of their own, by the share that pixels take them
 /// (screen/gather/interleaved/near_lights.h). No result depends on the number of threads.

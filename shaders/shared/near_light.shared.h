@@ -36,12 +36,12 @@ static_assert(sizeof(NearLight) == 48 && offsetof(NearLight, spread_m) == 32);
 
 // Share of a light's irradiance that comes from itself and not from what it consists of: 0 up to a squared distance of
 // `zone` areas, 1 from twice that on, and linear between in
-// @param form  squared / (pi squared + area): the disk-to-point form, times the squared distance.
-SHARED_FUNCTION float far_share(float form, float zone) {
+// @param nearness  disk_nearness() of the light.
+SHARED_FUNCTION float far_share(float nearness, float zone) {
   const float pi = 3.14159265f;
   float none = zone / (pi * zone + 1.0f);
   float all = 2.0f * zone / (2.0f * pi * zone + 1.0f);
-  return zone > 0.0f ? clamp((form - none) / (all - none), 0.0f, 1.0f) : 1.0f;
+  return zone > 0.0f ? clamp((nearness - none) / (all - none), 0.0f, 1.0f) : 1.0f;
 }
 
 SHARED_END

@@ -8,6 +8,7 @@
 
 #include "reference/virtual_light_tracer.h"
 #include "scenes.h"
+#include "tests/support/disk_to_point.h"
 #include "tests/support/paths.h"
 
 namespace volgi {
@@ -62,13 +63,11 @@ TEST(VirtualLights, OneOverAPlaneIsTheFormula) {
   const VirtualLightList list{glm::dvec3(0), {light_at(position, normal, flux, VIRTUAL_LIGHT_REFLECTED, 0.3f)}};
   const ReferencePicture p = gather_virtual_lights(scene, kAbove, list, small());
   for (size_t i = 0; i < p.color.pixels.size(); ++i) {
-    const glm::dvec3 between = glm::dvec3(position) - glm::dvec3(p.position.pixels[i]);
-    const double d = glm::length(between), cos_x = between.y / d;
-    const double cos_l = std::max(0.0, -glm::dot(glm::dvec3(normal), between) / d);
+    const double form = disk_to_point_summed(p.position.pixels[i], {0, 1, 0}, position, normal, double(0.3f));
+    const bool behind = glm::dot(normal, p.position.pixels[i] - position) <= 0.0f;
     for (int c = 0; c < 3; ++c) {
-      const double irradiance = double(flux[c]) * cos_x * cos_l / (std::numbers::pi * d * d + double(0.3f));
-      const double expected = double(albedo[c]) / std::numbers::pi * irradiance;
-      EXPECT_NEAR(p.color.pixels[i][c], expected, 1e-6 * expected + 1e-12) << i;
+      const double expected = behind ? 0.0 : double(albedo[c]) / std::numbers::pi * double(flux[c]) * form;
+      EXPECT_NEAR(p.color.pixels[i][c], expected, 3e-5 * expected + 1e-12) << i;
     }
     EXPECT_EQ(p.direct.pixels[i], glm::vec3(0.0f));
   }

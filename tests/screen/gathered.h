@@ -8,6 +8,7 @@
 
 #include "screen/gather/strided/virtual_light_gather.h"
 #include "tests/screen/screen_scene.h"
+#include "tests/support/disk_to_point.h"
 
 namespace volgi::test {
 
@@ -92,11 +93,9 @@ inline GatherOptions every_pixel() {
 /// What one light gives a pixel, no visibility: docs/conventions.md#virtual-lights.
 inline glm::dvec3 irradiance_of(const VirtualLight& light, const Seen& seen, size_t pixel) {
   const glm::dvec3 w = glm::dvec3(light.position) - glm::dvec3(seen.position[pixel]);
-  const double squared = glm::dot(w, w);
-  if (squared == 0.0 || glm::dot(w, seen.geometric(pixel)) <= 0.0) return glm::dvec3(0.0);
-  const double cosines =
-      std::max(0.0, glm::dot(w, seen.normal(pixel))) * std::max(0.0, -glm::dot(w, glm::dvec3(light.normal))) / squared;
-  return glm::dvec3(light.flux) * (cosines / (glm::pi<double>() * squared + double(light.area_m2)));
+  if (glm::dot(w, seen.geometric(pixel)) <= 0.0) return glm::dvec3(0.0);
+  return glm::dvec3(light.flux) * disk_to_point_exact(seen.position[pixel], seen.normal(pixel), light.position,
+                                                      light.normal, double(light.area_m2));
 }
 
 inline glm::dvec3 radiance_of(const std::vector<VirtualLight>& lights, const Seen& seen, size_t pixel) {

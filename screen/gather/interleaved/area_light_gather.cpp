@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "shaders/screen/gather/interleaved/exact_pixels.shared.h"
+#include "shaders/shared/disk_to_point.shared.h"
 
 namespace volgi::screen {
 
@@ -46,8 +47,10 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   direct_ = picture(size);
   indirect_ = picture(size);
   direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
+  std::vector<std::string> defines{shadow.define()};
+  if (options_.near_zone >= DISK_FAR_AREAS) defines.emplace_back("FROM_AFAR");
   arrange_ = gl::Program::compute("screen/gather/interleaved/arrange_lights.comp.glsl");
-  gather_ = gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define()});
+  gather_ = gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", defines);
   if (options_.interleave == 1) return;
   direct_irradiance_ = picture(size);
   indirect_irradiance_ = picture(size);
@@ -55,8 +58,8 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   error_estimate_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
   bins_ = gl::Buffer((1 + ERROR_BINS) * sizeof(GLuint));
   list_.reserve(size_t(size.x) * size_t(size.y));
-  gather_listed_ =
-      gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", {shadow.define(), "LISTED"});
+  defines.emplace_back("LISTED");
+  gather_listed_ = gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", defines);
   blur_ = gl::Program::compute("screen/gather/interleaved/geometry_blur.comp.glsl");
   count_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_count.comp.glsl");
   threshold_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_threshold.comp.glsl");

@@ -4,12 +4,17 @@
 #include <array>
 
 #include "shaders/screen/gather/interleaved/near_tiles.shared.h"
+#include "shaders/shared/disk_to_point.shared.h"
 
 namespace volgi::screen {
 
 namespace {
 
 glm::ivec2 tiles_of(glm::ivec2 pixels, int tile) { return (pixels + tile - 1) / tile; }
+
+std::vector<std::string> defines(float zone) {
+  return zone >= DISK_FAR_AREAS ? std::vector<std::string>{"FROM_AFAR"} : std::vector<std::string>{};
+}
 
 }  // namespace
 
@@ -21,7 +26,7 @@ NearLights::NearLights(glm::ivec2 size, float zone)
       boxes_program_(gl::Program::compute("screen/gather/interleaved/near_lights_boxes.comp.glsl")),
       large_program_(gl::Program::compute("screen/gather/interleaved/near_lights_tiles.comp.glsl", {"LARGE"})),
       tiles_program_(gl::Program::compute("screen/gather/interleaved/near_lights_tiles.comp.glsl")),
-      gather_(gl::Program::compute("screen/gather/interleaved/near_lights.comp.glsl")) {
+      gather_(gl::Program::compute("screen/gather/interleaved/near_lights.comp.glsl", defines(zone))) {
   direct_.clear({0.0f, 0.0f, 0.0f, 0.0f});
 }
 

@@ -40,14 +40,16 @@ void main() {
     VirtualLight l = lights[index];
     vec3 w = l.position - position;
     float squared = dot(w, w);
-    float cosines = max(dot(w, side.normal), 0.0) * max(-dot(w, l.normal), 0.0);
-    float share = far_share(disk_form(squared, l.area_m2), zone);
-    if (cosines <= 0.0 && share >= 1.0) continue;
+    float along = dot(w, side.normal), height = -dot(w, l.normal);
+    float form = disk_to_point(max(height, 0.0), along, -dot(l.normal, side.normal), squared, l.area_m2);
+    if (min(along, height) <= 0.0) form = 0.0;
+    float share = far_share(disk_nearness(squared, l.area_m2), zone);
+    if (form <= 0.0 && share >= 1.0) continue;
     if (cluster != seen) {
       seen = cluster;
       visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
     }
-    vec3 irradiance = l.flux * disk_to_point(visibility * share * cosines, squared, l.area_m2);
+    vec3 irradiance = l.flux * (visibility * share * form);
     if (share < 1.0)
       irradiance += (1.0 - share) *  // nothing hides what is so near, as for pixels
                     irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), zone);

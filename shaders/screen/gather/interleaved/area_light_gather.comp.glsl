@@ -3,7 +3,8 @@
 // disk-to-point form of docs/conventions.md#virtual-lights.
 // Every interleave-th pixel in both directions takes one subset of the lights, times the number of subsets; with
 // interleave 1, and LISTED (the pixels of a list), all of the lights, and the sum ends in radiance.
-#include "shared/disk_to_point.glsl"
+#include "shared/constants.glsl"
+#include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
@@ -33,6 +34,12 @@ uniform int with_direct;
 uniform int begins;
 uniform int ends;
 
+#ifdef FROM_AFAR  // near_zone is DISK_FAR_AREAS at least: nearer there is nothing of a light
+#define LIGHT_DISK_TO_POINT disk_to_point_from_afar
+#else
+#define LIGHT_DISK_TO_POINT disk_to_point
+#endif
+
 struct Irradiance {
   vec3 reflected, emitted;
 };
@@ -42,10 +49,12 @@ Irradiance sum_of_lights(int begin, int end, vec3 x, vec3 normal, vec3 geometric
   for (int i = begin; i < end; ++i) {
     vec3 w = lights[i].position - x;
     float squared = dot(w, w);
-    float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
-    cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
-    float form = disk_to_point(1.0, squared, lights[i].area_m2);
-    vec3 irradiance = lights[i].flux * (far_share(squared * squared * form, near_zone) * cosines * form);
+    float along = dot(w, normal);
+    float height = max(-dot(w, lights[i].normal), 0.0);
+    float share = far_share(disk_nearness(squared, lights[i].area_m2), near_zone);
+    float form = LIGHT_DISK_TO_POINT(height, along, -dot(normal, lights[i].normal), squared, lights[i].area_m2);
+    form = min(min(along, dot(w, geometric)), share) > 0.0 ? form : 0.0;
+    vec3 irradiance = lights[i].flux * (share * form);
     if (lights[i].kind == VIRTUAL_LIGHT_EMITTED) sum.emitted += irradiance;
     else sum.reflected += irradiance;
   }

@@ -1,6 +1,7 @@
 #version 450 core
 // Light of sub-lights on the pixels near them.
 #define SUBLIGHTS_BINDING 3
+#include "shared/constants.glsl"
 #include "screen/lights/resample/sublights.glsl"
 #include "screen/base/gbuffer.glsl"
 #include "screen/gather/interleaved/near_lights.glsl"
@@ -15,7 +16,7 @@ vec3 irradiance_of_light(Receiver at, int i) {
   NearLight light = near_lights[i];
   vec3 way = light.position - at.position;
   float squared = dot(way, way);
-  float share = 1.0 - far_share(disk_form(squared, light.area_m2), zone);
+  float share = 1.0 - far_share(disk_nearness(squared, light.area_m2), zone);
   bool behind = dot(way, at.geometric) <= -light.spread_m || -dot(way, light.normal) <= light.rise_m;
   if (share <= 0.0 || behind) return vec3(0.0);
   return share * irradiance_of_sublights(at, i, zone);

@@ -3,7 +3,8 @@
 // form (docs/conventions.md#virtual-lights), less what negative lights take away. A dispatch takes one block of lights;
 // the first begins the sum, the last ends it.
 // NEGATIVE: there are negative lights. LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
-#include "shared/disk_to_point.glsl"
+#include "shared/constants.glsl"
+#include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/visibility/negative/negative_light.shared.h"
@@ -26,9 +27,10 @@ vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
   for (int i = first_light; i < end_light; ++i) {
     vec3 w = lights[i].position - x;
     float squared = dot(w, w);
-    float cosines = max(dot(w, normal), 0.0) * max(-dot(w, lights[i].normal), 0.0);
-    cosines = dot(w, geometric) > 0.0 ? cosines : 0.0;
-    sum += lights[i].flux * disk_to_point(cosines, squared, lights[i].area_m2);
+    float along = dot(w, normal);
+    float height = max(-dot(w, lights[i].normal), 0.0);
+    float form = disk_to_point(height, along, -dot(normal, lights[i].normal), squared, lights[i].area_m2);
+    sum += lights[i].flux * (min(along, dot(w, geometric)) > 0.0 ? form : 0.0);
   }
   return sum;
 }

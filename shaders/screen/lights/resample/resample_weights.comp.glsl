@@ -1,6 +1,6 @@
 #version 450 core
-// What each candidate sends to the receivers, without visibility.
-#include "shared/disk_to_point.glsl"
+// What each candidate sends to the receivers, without visibility: near enough by Nichols' form (2010, eq. 4.1).
+#include "shared/constants.glsl"
 #include "shared/global_index.shared.h"
 #include "shared/luminance.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
@@ -18,7 +18,7 @@ void main() {
       vec3 w = l.position - receivers[k].position.xyz;
       float squared = dot(w, w);
       float cosines = max(dot(w, receivers[k].normal.xyz), 0.0) * max(-dot(w, l.normal), 0.0);
-      sum += disk_to_point(receivers[k].position.w * cosines, squared, l.area_m2);
+      sum += receivers[k].position.w * cosines / (squared * (PI * squared + l.area_m2) + 1e-30);
     }
   }
   weights[first_candidate + i] = vec2(flux * sum, flux);

@@ -2,6 +2,7 @@
 #ifndef VOLGI_PASSED_LIGHT_GLSL
 #define VOLGI_PASSED_LIGHT_GLSL
 #include "shared/constants.glsl"
+#include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
@@ -29,8 +30,7 @@ void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight s
   // The cosine at the surface is the negated one: light arrives from behind.
   float cosine_here = dot(way, normal), cosine_there = dot(way, l.normal);
   if (min(cosine_here, cosine_there) <= MIN_COSINE * distance) return;
-  vec3 irradiance =
-      l.flux * (cosine_here * cosine_there / (squared * (PI * squared + l.area_m2)));
+  vec3 irradiance = l.flux * disk_to_point(cosine_there, cosine_here, dot(normal, l.normal), squared, l.area_m2);
   sum.irradiance += irradiance;
   sum.direction += luminance(irradiance) * way / distance;
 }

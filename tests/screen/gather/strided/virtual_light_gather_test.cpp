@@ -53,12 +53,9 @@ TEST_F(VirtualLightGatherTest, OneDiskOverAPlaneIsTheFormula) {
       const CameraRay ray = camera_ray(camera, glm::vec2(x, 29 - y) + 0.5f, seen.size);
       const glm::dvec3 at =
           glm::dvec3(ray.origin) - glm::dvec3(ray.direction) * (double(ray.origin.y) / double(ray.direction.y));
-      const glm::dvec3 between = glm::dvec3(light.position) - at;
-      const double d = glm::length(between);
-      const double cosines = between.y / d * std::max(0.0, -glm::dot(glm::dvec3(light.normal), between) / d);
+      const double form = disk_to_point_exact(at, {0, 1, 0}, light.position, light.normal, 0.3);
       for (int c = 0; c < 3; ++c) {
-        const double expected =
-            double(albedo[c]) / glm::pi<double>() * double(light.flux[c]) * cosines / (glm::pi<double>() * d * d + 0.3);
+        const double expected = double(albedo[c]) / glm::pi<double>() * double(light.flux[c]) * form;
         EXPECT_NEAR(double(picture.indirect[size_t(y * 40 + x)][c]), expected, 2e-4 * expected + 1e-6);
         lit += expected > 1e-3;
       }
