@@ -1,12 +1,14 @@
 #include "propagation/light_in/side_gather_cpu.h"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <glm/gtc/constants.hpp>
 #include <limits>
 
 #include "core/octahedral.h"
-#include "core/surface.h"
+#include "propagation/light_in/side_start_internal.h"
 #include "propagation/side_loops.h"
 #include "shaders/shared/disk_to_point.shared.h"
 
@@ -17,79 +19,6 @@ namespace {
 using shared::Side;
 using shared::VirtualLight;
 
-constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
-// The slicing passes round vertices to half a step, which moves a surface along the axis that its normal is nearest to
-// by 3/2 steps at most. Nearer to the surface than that, a cell's centre may lie on it or behind it.
-constexpr float kRounded = 2.0f / float(SLICE_STEPS);  // cells
-
-/// Where rays of a side start.
-struct Start {
-  glm::vec3 position;  // on the surface
-  glm::vec3 origin;    // of rays: beside the surface, where the cell is
-  TriangleIndex from;
-};
-
-/// What the cell's line through `middle` (world, in the plane of the cell's centre) towards the side's face meets
-/// within one cell, if it faces as the side does. What lies before is free, so that rays from there start on the cell's
-/// side of every wall, however thin.
-bool meets(const EmbreeScene& embree, const Side& side, float depth_from_centre, float cell_size_m, glm::vec3 middle,
-           Start& start) {
-  const glm::vec3 along(shared::face_step(side.face));
-  const float back = std::abs(depth_from_centre) < kRounded ? kRounded : 0.0f;
-  const glm::vec3 origin = middle - along * (back * cell_size_m);
-  RayHit hit;
-  if (!embree.intersect(origin, along, (1.0f + kRounded + back) * cell_size_m, 0, hit)) return false;
-  const Scene& scene = embree.scene();
-  const Mesh& mesh = scene.meshes[hit.mesh];
-  const glm::uvec3 t = mesh.triangles[hit.triangle];
-  const glm::vec3 a = mesh.positions[t.x];
-  const glm::vec3 across = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
-  const float facing = std::abs(glm::dot(across, side.normal));
-  if (!(facing >= kSimilarNormalCosine * glm::length(across))) return false;
-  start.position = origin + along * hit.distance;
-  start.origin = embree.leaving_point(start.position, along, hit.distance);
-  start.from = hit.index();
-  return true;
-}
-
-bool free_between(const EmbreeScene& embree, glm::vec3 a, glm::vec3 b) {
-  const float distance = glm::distance(a, b);
-  return distance == 0.0f || !embree.occluded({a, (b - a) / distance, distance, 0, {}, {}});
-}
-
-bool reached(const EmbreeScene& embree, glm::vec3 from, glm::vec3 corner, glm::vec3 to) {
-  return free_between(embree, from, corner) && free_between(embree, corner, to);
-}
-
-/// The surface on the line through the cell's centre; where an edge is near, on one of the eight lines around it that
-/// coverage is counted on (docs/theory.md#voxelization) and that steps in their plane reach. Where that meets nothing
-/// (surfaces that end between the lines once they are rounded), rays start in the cell's centre.
-Start start_of(const VoxelGrid& voxels, const EmbreeScene& embree, const Side& side) {
-  const float h = voxels.grid().cell_size_m;
-  const glm::vec3 cell = glm::vec3(shared::cell_coord(voxels.grid(), side.cell)) + 0.5f;
-  const glm::vec3 centre = shared::world_from_cell(voxels.grid(), cell);
-  const int axis = shared::face_axis(side.face);
-  const float depth = side.depth - cell[axis];
-  Start start;
-  if (meets(embree, side, depth, h, centre, start)) return start;
-  const int axis_b = shared::axis_b(axis), axis_c = shared::axis_c(axis);
-  for (int k : {1, 3, 5, 7, 0, 2, 6, 8}) {
-    const int column = k % 3 - 1, row = k / 3 - 1;
-    glm::vec3 middle = centre;
-    middle[axis_b] += float(column) * h / 3.0f;
-    middle[axis_c] += float(row) * h / 3.0f;
-    glm::vec3 corner_b = centre, corner_c = centre;
-    corner_b[axis_b] = middle[axis_b];
-    corner_c[axis_c] = middle[axis_c];
-    if (!reached(embree, centre, corner_b, middle) && !reached(embree, centre, corner_c, middle)) continue;
-    if (meets(embree, side, depth, h, middle, start)) return start;
-  }
-  glm::vec3 point = cell;
-  const float next = point[axis] + float(shared::face_sign(side.face));
-  point[axis] = std::clamp(side.depth, std::min(point[axis], next), std::max(point[axis], next));
-  return {shared::world_from_cell(voxels.grid(), point), centre, {}};
-}
-
 /// A light or a sub-light of one, as a side sees it.
 struct Disk {
   glm::vec3 position, normal, flux;
@@ -97,60 +26,113 @@ struct Disk {
 };
 
 constexpr float FAR = std::numeric_limits<float>::infinity();
+constexpr size_t FINE_PER_COARSE = FINE_SUBLIGHTS / COARSE_SUBLIGHTS;
+constexpr size_t GROUP = 64;  // sides that look for lights near them together
 
-/// @param end  of rays to the light: beside its surface.
-glm::vec3 irradiance_of(const EmbreeScene& embree, const Side& side, const Start& start, const Disk& light,
-                        glm::vec3 end, std::uint32_t seed) {
+Disk disk_of(const shared::SubLight& l) { return {l.position, octahedral_decode(l.normal), l.flux, l.area_m2}; }
+Disk disk_of(const VirtualLight& l) { return {l.position, l.normal, l.flux, l.area_m2}; }
+
+/// As if nothing were in between.
+glm::vec3 irradiance_of(const Side& side, const SideStart& start, const Disk& light) {
   const glm::vec3 to_light = light.position - start.position;
   const float along_side = glm::dot(to_light, side.normal), along_light = -glm::dot(to_light, light.normal);
   const bool dark = light.flux == glm::vec3(0.0f);
   if (dark || !(along_side > 0.0f) || !(along_light > 0.0f)) return glm::vec3(0.0f);
-  const glm::vec3 way = end - start.origin;
-  const float distance = glm::length(way);
-  if (distance > 0.0f && embree.occluded({start.origin, way / distance, distance, seed, start.from, {}})) {
-    return glm::vec3(0.0f);
-  }
-  const float squared = glm::dot(to_light, to_light);
-  const float facing = -glm::dot(light.normal, side.normal);
+  const float facing = -glm::dot(light.normal, side.normal), squared = glm::dot(to_light, to_light);
   return light.flux * shared::disk_to_point(along_light, along_side, facing, squared, light.area_m2);
 }
 
-glm::vec3 irradiance_of_sublight(const EmbreeScene& embree, const Side& side, const Start& start,
-                                 const shared::SubLight& sublight, std::uint32_t seed) {
-  const Disk disk{sublight.position, octahedral_decode(sublight.normal), sublight.flux, sublight.area_m2};
-  return irradiance_of(embree, side, start, disk, embree.leaving_point(disk.position, -disk.normal, FAR), seed);
-}
-
 /// Share of a disk's light at a point that comes from itself and not from what it consists of.
-float far_share_at(glm::vec3 point, glm::vec3 position, float area_m2, float zone) {
-  const glm::vec3 way = position - point;
-  return shared::far_share(shared::disk_nearness(glm::dot(way, way), area_m2), zone);
+float far_share_at(glm::vec3 point, const Disk& light, float zone) {
+  const glm::vec3 way = light.position - point;
+  return shared::far_share(shared::disk_nearness(glm::dot(way, way), light.area_m2), zone);
 }
 
-/// Of a light's sub-lights: its coarse ones, and nearer by half the fine ones of those. As near_lights.comp.glsl has
-/// it.
-glm::vec3 irradiance_of_sublights(const EmbreeScene& embree, const Side& side, const Start& start,
-                                  std::span<const shared::SubLight> sublights, float zone, std::uint32_t seed) {
-  constexpr size_t FINE_PER_COARSE = FINE_SUBLIGHTS / COARSE_SUBLIGHTS;
-  glm::vec3 sum(0.0f);
-  for (size_t coarse = 0; coarse < COARSE_SUBLIGHTS; ++coarse) {
-    const shared::SubLight& whole = sublights[coarse];
-    const float far = far_share_at(start.position, whole.position, whole.area_m2, zone);
-    if (far > 0.0f) sum += far * irradiance_of_sublight(embree, side, start, whole, seed);
-    if (far >= 1.0f) continue;
-    for (size_t k = 0; k < FINE_PER_COARSE; ++k) {
-      const shared::SubLight& part = sublights[COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE + k];
-      sum += (1.0f - far) * irradiance_of_sublight(embree, side, start, part, seed + std::uint32_t(k));
+struct Box {
+  glm::vec3 least{FAR}, most{-FAR};
+  void add(glm::vec3 p) {
+    least = glm::min(least, p);
+    most = glm::max(most, p);
+  }
+};
+
+/// Lights and their sub-lights as disks, with the ends of rays to them; what a side takes of both.
+class Gather {
+ public:
+  Gather(const EmbreeScene& embree, const VirtualLightsForSides& from, size_t first, size_t end, int stride)
+      : embree_(embree), zone_(from.sublights.empty() ? 0.0f : from.near_zone), stride_(size_t(stride)) {
+    for (size_t k = first; k < end; ++k) {
+      lights_.push_back(disk_of(from.lights[k]));
+      light_ends_.push_back(end_of(lights_.back()));
+      if (from.sublights.empty()) continue;
+      for (size_t p = 0; p < SUBLIGHTS_PER_LIGHT; ++p) {
+        sublights_.push_back(disk_of(from.sublights[k * SUBLIGHTS_PER_LIGHT + p]));
+        if (p < COARSE_SUBLIGHTS) coarse_ends_.push_back(end_of(sublights_.back()));
+      }
     }
   }
-  return sum;
-}
 
-/// What a light has itself and not its sub-lights.
-float share_of_light(const VirtualLightsForSides& from, size_t light, glm::vec3 point) {
-  if (from.sublights.empty()) return 1.0f;
-  return far_share_at(point, from.lights[light].position, from.lights[light].area_m2, from.near_zone);
-}
+  /// Lights of which sub-lights reach into the box.
+  std::vector<std::uint32_t> near_lights(const Box& box) const {
+    std::vector<std::uint32_t> near;
+    for (size_t k = 0; k < lights_.size() && !sublights_.empty(); ++k) {
+      const glm::vec3 d = glm::clamp(lights_[k].position, box.least, box.most) - lights_[k].position;
+      // far_share() is 1 from there on.
+      if (glm::dot(d, d) < 2.0f * zone_ * lights_[k].area_m2) near.push_back(std::uint32_t(k));
+    }
+    return near;
+  }
+
+  /// Of every stride-th light from `offset` on, as far as they shine themselves.
+  glm::vec3 from_lights(const Side& side, const SideStart& start, size_t offset, std::uint32_t seed) const {
+    glm::vec3 sum(0.0f);
+    for (size_t k = offset; k < lights_.size(); k += stride_) {
+      Disk light = lights_[k];
+      const float share = sublights_.empty() ? 1.0f : far_share_at(start.position, light, zone_);
+      if (share <= 0.0f) continue;
+      // Peaks near a light are its sub-lights'.
+      if (sublights_.empty()) light.area_m2 += std::min(float(stride_ - 1) * light.area_m2, side.area_m2);
+      const glm::vec3 own = share * irradiance_of(side, start, light);
+      if (own != glm::vec3(0.0f) && !hidden(start, light_ends_[k], seed + std::uint32_t(k))) sum += own;
+    }
+    return sum * float(stride_);
+  }
+
+  /// Of a light's sub-lights, by the share that it does not have itself: its coarse ones, and nearer by half the fine
+  /// ones of those, as near_lights.comp.glsl has it. A ray for each coarse one.
+  glm::vec3 from_sublights(const Side& side, const SideStart& start, size_t light, std::uint32_t seed) const {
+    const float near = 1.0f - far_share_at(start.position, lights_[light], zone_);
+    if (near <= 0.0f) return glm::vec3(0.0f);
+    const Disk* sublights = &sublights_[light * SUBLIGHTS_PER_LIGHT];
+    glm::vec3 sum(0.0f);
+    for (size_t coarse = 0; coarse < COARSE_SUBLIGHTS; ++coarse) {
+      const float far = far_share_at(start.position, sublights[coarse], zone_);
+      glm::vec3 own(0.0f);
+      if (far > 0.0f) own += far * irradiance_of(side, start, sublights[coarse]);
+      for (size_t k = 0; k < FINE_PER_COARSE && far < 1.0f; ++k)
+        own += (1.0f - far) * irradiance_of(side, start, sublights[COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE + k]);
+      if (own == glm::vec3(0.0f)) continue;
+      const glm::vec3 end = coarse_ends_[light * COARSE_SUBLIGHTS + coarse];
+      if (!hidden(start, end, seed + std::uint32_t(light))) sum += own;
+    }
+    return near * sum;
+  }
+
+ private:
+  /// Of rays to a light: beside its surface.
+  glm::vec3 end_of(const Disk& light) const { return embree_.leaving_point(light.position, -light.normal, FAR); }
+  bool hidden(const SideStart& start, glm::vec3 end, std::uint32_t seed) const {
+    const glm::vec3 way = end - start.origin;
+    const float distance = glm::length(way);
+    return distance > 0.0f && embree_.occluded({start.origin, way / distance, distance, seed, start.from, {}});
+  }
+
+  const EmbreeScene& embree_;
+  float zone_;
+  size_t stride_;
+  std::vector<Disk> lights_, sublights_;
+  std::vector<glm::vec3> light_ends_, coarse_ends_;
+};
 
 }  // namespace
 
@@ -164,33 +146,28 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
                                    const VirtualLightsForSides& from, size_t first, size_t end, int stride) {
   assert(stride >= 1 && end <= from.lights.size());
   assert(from.sublights.empty() || from.sublights.size() >= from.lights.size() * SUBLIGHTS_PER_LIGHT);
-  std::vector<glm::vec3> ends(from.lights.size());
-  for (size_t i = first; i < end; ++i)
-    ends[i] = embree.leaving_point(from.lights[i].position, -from.lights[i].normal, FAR);
+  const Gather gather(embree, from, first, end, stride);
   std::vector<glm::vec4> irradiance(voxels.side_count());
-  for_each_side(irradiance.size(), [&](size_t i) {
-    const Side& side = voxels.sides()[i];
-    const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
-    const Start start = start_of(voxels, embree, side);
-    const auto seed_of = [&](size_t k) { return std::uint32_t(i) * 2654435769u + std::uint32_t(k); };
-    glm::vec3 far(0.0f), near(0.0f);
-    for (auto k = first + size_t(first_light_of_side(cell, side.face, stride)); k < end; k += size_t(stride)) {
-      const VirtualLight& light = from.lights[k];
-      const float share = share_of_light(from, k, start.position);
-      if (share <= 0.0f) continue;
-      // Peaks near a light are its sub-lights'.
-      const float spread_m2 = from.sublights.empty() ? std::min(float(stride - 1) * light.area_m2, side.area_m2) : 0.0f;
-      const float area_m2 = light.area_m2 + spread_m2;
-      far += share * irradiance_of(embree, side, start, {light.position, light.normal, light.flux, area_m2}, ends[k],
-                                   seed_of(k));
+  const auto gather_group = [&](size_t begin, size_t past) {
+    std::array<SideStart, GROUP> starts;
+    Box box;
+    for (size_t i = begin; i < past; ++i) {
+      starts[i - begin] = start_of_side(voxels, embree, voxels.sides()[i]);
+      box.add(starts[i - begin].position);
     }
-    for (size_t k = first; k < end && !from.sublights.empty(); ++k) {
-      const float share = 1.0f - share_of_light(from, k, start.position);
-      if (share <= 0.0f) continue;
-      const std::span<const shared::SubLight> sublights(&from.sublights[k * SUBLIGHTS_PER_LIGHT], SUBLIGHTS_PER_LIGHT);
-      near += share * irradiance_of_sublights(embree, side, start, sublights, from.near_zone, seed_of(k));
+    const std::vector<std::uint32_t> near = gather.near_lights(box);
+    for (size_t i = begin; i < past; ++i) {
+      const Side& side = voxels.sides()[i];
+      const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
+      const std::uint32_t seed = std::uint32_t(i) * 2654435769u;
+      const auto offset = size_t(first_light_of_side(cell, side.face, stride));
+      glm::vec3 sum = gather.from_lights(side, starts[i - begin], offset, seed);
+      for (const std::uint32_t k : near) sum += gather.from_sublights(side, starts[i - begin], k, seed);
+      irradiance[i] = glm::vec4(sum, 0.0f);
     }
-    irradiance[i] = glm::vec4(far * float(stride) + near, 0.0f);
+  };
+  tbb::parallel_for(size_t(0), (irradiance.size() + GROUP - 1) / GROUP, [&](size_t group) {
+    gather_group(group * GROUP, std::min((group + 1) * GROUP, irradiance.size()));
   });
   return irradiance;
 }

@@ -40,7 +40,7 @@ struct VirtualLightsForSides {
 /// its own area is the most that is added, which takes the peaks off single sides. Where lights have sub-lights, a side
 /// near one takes those instead, of every light and with rays of their own, by the share that pixels take them
 /// (screen/gather/interleaved/near_lights.h). No result depends on the number of threads.
-/// Cost: at most count / stride rays a side, and up to 20 for each light near it; a look at every light's distance.
+/// Cost: at most count / stride rays a side, and four for each light near it.
 /// @param first, end  of `from.lights`. Where stride > 1, every stride-th should be an even choice, as lights along a
 ///   curve are; every 16th of Halton's sequence is a wedge.
 /// Twin: screen/bounces/volume/side_gather_gl.h, with the maps of pixels.

@@ -16,6 +16,7 @@ layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MA
 layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
 layout(std430, binding = 1) readonly buffer Order { uint order[]; };
 layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };
+layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
 layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
 layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
 layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
@@ -23,13 +24,36 @@ layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
 uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
 
+const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
+
+// A point for all of a side's surface, cell units: on the line through the middle of what the cell's other sides leave of the
+// cell; those of its own surface leave all. propagation/light_in/side_start_internal.h.
+vec3 middle_of(Side side) {
+  ivec3 cell = cell_coord(grid, side.cell);
+  uvec2 faces = cell_sides[side.cell];
+  vec3 low = vec3(cell), high = low + 1.0;
+  for (int face = 0; face < 6; ++face) {
+    if (!has_side(faces, face)) continue;
+    uint other = side_index(faces, face);
+    if (dot(sides[other].normal, side.normal) >= SIMILAR_NORMAL_COSINE) continue;
+    if (face_sign(face) < 0) low[face_axis(face)] = sides[other].depth;
+    else high[face_axis(face)] = sides[other].depth;
+  }
+  vec3 off = mix(vec3(0.0), 0.5 * (low + high) - vec3(cell) - 0.5, lessThan(low, high));
+  int axis = face_axis(side.face);
+  off[axis] = 0.0;
+  // Along the side's plane; a plane that the face's axis hardly meets is not followed far.
+  float slope = max(abs(side.normal[axis]), 0.1) * (side.normal[axis] < 0.0 ? -1.0 : 1.0);
+  vec3 middle = vec3(cell) + 0.5 + off;
+  middle[axis] = side.depth - dot(side.normal, off) / slope;
+  return middle;
+}
+
 void main() {
   uint s = global_index();
   if (s >= side_count || s >= uint(sides.length())) return;
   Side side = sides[s];
-  vec3 at = vec3(cell_coord(grid, side.cell)) + 0.5;
-  at[side.face >> 1] = side.depth;
-  vec3 position = world_from_cell(grid, at);
+  vec3 position = world_from_cell(grid, middle_of(side));
   vec3 reflected = vec3(0.0), emitted = vec3(0.0);
   uint seen = NO_VIRTUAL_AREA_LIGHT;
   float visibility = 0.0;
