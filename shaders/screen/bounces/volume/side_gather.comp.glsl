@@ -75,8 +75,8 @@ void main() {
     }
     vec3 irradiance = l.flux * (visibility * share * form);
     if (share < 1.0)
-      irradiance += (1.0 - share) *  // nothing hides what is so near, as for pixels
-                    irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), zone);
+      // Nothing hides what is so near, as for pixels.
+      irradiance += irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), 1.0 - share, zone);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
   }

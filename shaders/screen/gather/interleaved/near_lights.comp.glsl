@@ -18,8 +18,7 @@ vec3 irradiance_of_light(Receiver at, int i) {
   float squared = dot(way, way);
   float share = 1.0 - far_share(disk_nearness(squared, light.area_m2), zone);
   bool behind = dot(way, at.geometric) <= -light.spread_m || -dot(way, light.normal) <= light.rise_m;
-  if (share <= 0.0 || behind) return vec3(0.0);
-  return share * irradiance_of_sublights(at, i, zone);
+  return irradiance_of_sublights(at, i, behind ? 0.0 : share, zone);
 }
 
 void main() {

@@ -6,7 +6,8 @@
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 
-layout(std430, binding = SUBLIGHTS_BINDING) readonly buffer SubLights { SubLight sublights[]; };
+layout(std430, binding = SUBLIGHTS_BINDING) readonly buffer SubLights { vec4 sublight_halves[]; };  // of SubLight, two each: software rasterizers load vectors whole
+
 
 #ifdef FROM_AFAR  // `zone` is DISK_FAR_AREAS at least, so that coarse sub-lights are
 #define COARSE_DISK_TO_POINT disk_to_point_from_afar
@@ -14,48 +15,51 @@ layout(std430, binding = SUBLIGHTS_BINDING) readonly buffer SubLights { SubLight
 #define COARSE_DISK_TO_POINT disk_to_point
 #endif
 
+#define FINE_PER_COARSE (FINE_SUBLIGHTS / COARSE_SUBLIGHTS)
+
 struct Receiver {
   vec3 position, normal, geometric;
 };
 
 // One of them as a point sees it.
 struct Disk {
-  float height, along, facing, squared;  // disk_to_point()
-  bool seen;
+  float height, along, facing, squared, area_m2;  // disk_to_point()
+  vec3 flux;  // none where the point does not see it
 };
 
 Disk disk_of(Receiver at, int p) {
-  vec3 w = sublights[p].position - at.position;
-  vec3 normal = octahedral_decode(unpackSnorm2x16(sublights[p].normal));
+  vec4 first = sublight_halves[2 * p], second = sublight_halves[2 * p + 1];
+  vec3 w = first.xyz - at.position;
+  vec3 normal = octahedral_decode(unpackSnorm2x16(floatBitsToUint(second.w)));
   float along = dot(w, at.normal);
-  return Disk(max(-dot(w, normal), 0.0), along, -dot(normal, at.normal), dot(w, w), min(along, dot(w, at.geometric)) > 0.0);
+  vec3 flux = min(along, dot(w, at.geometric)) > 0.0 ? second.xyz : vec3(0.0);
+  return Disk(max(-dot(w, normal), 0.0), along, -dot(normal, at.normal), dot(w, w), first.w, flux);
 }
 
 vec3 irradiance_of_fine(Receiver at, int p) {
   Disk d = disk_of(at, p);
-  return d.seen ? sublights[p].flux * disk_to_point(d.height, d.along, d.facing, d.squared, sublights[p].area_m2) : vec3(0.0);
+  return d.flux * disk_to_point(d.height, d.along, d.facing, d.squared, d.area_m2);
 }
 
 vec3 irradiance_of_coarse(Receiver at, int light, int coarse, float zone) {
   int first = light * SUBLIGHTS_PER_LIGHT;
-  int p = first + coarse;
-  float area_m2 = sublights[p].area_m2;
-  Disk d = disk_of(at, p);
-  float far = far_share(disk_nearness(d.squared, area_m2), zone);
-  float form = far > 0.0 && d.seen ? COARSE_DISK_TO_POINT(d.height, d.along, d.facing, d.squared, area_m2) : 0.0;
-  vec3 whole = sublights[p].flux * form;
-  if (far >= 1.0) return whole;
+  Disk d = disk_of(at, first + coarse);
+  float far = far_share(disk_nearness(d.squared, d.area_m2), zone);
+  float form = far > 0.0 ? COARSE_DISK_TO_POINT(d.height, d.along, d.facing, d.squared, d.area_m2) : 0.0;
+  vec3 whole = d.flux * form;
+  int first_fine = first + COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE;
+  int fine_count = far < 1.0 ? FINE_PER_COARSE : 0;  // software rasterizers run both sides of a branch, but leave loops
   vec3 sum = vec3(0.0);
-  for (int k = 0; k < FINE_SUBLIGHTS / COARSE_SUBLIGHTS; ++k) {
-    sum += irradiance_of_fine(at, first + COARSE_SUBLIGHTS + coarse * (FINE_SUBLIGHTS / COARSE_SUBLIGHTS) + k);
-  }
+  for (int k = 0; k < fine_count; ++k) sum += irradiance_of_fine(at, first_fine + k);
   return mix(sum, whole, far);
 }
 
-vec3 irradiance_of_sublights(Receiver at, int light, float zone) {
+// @param share  of the light's irradiance that is theirs; nothing is done for 0.
+vec3 irradiance_of_sublights(Receiver at, int light, float share, float zone) {
+  int coarse_count = share > 0.0 ? COARSE_SUBLIGHTS : 0;
   vec3 sum = vec3(0.0);
-  for (int coarse = 0; coarse < COARSE_SUBLIGHTS; ++coarse) sum += irradiance_of_coarse(at, light, coarse, zone);
-  return sum;
+  for (int coarse = 0; coarse < coarse_count; ++coarse) sum += irradiance_of_coarse(at, light, coarse, zone);
+  return share * sum;
 }
 
 #endif
