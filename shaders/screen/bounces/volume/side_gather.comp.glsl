@@ -1,25 +1,21 @@
 #version 450 core
-// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their sub-lights light it. Lights come in the order of their area lights, so that
-// each one's shadow is looked up once.
-#define SUBLIGHTS_BINDING 8
+// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their sub-lights light it.
+// Lights come in the order of their area lights, so that each one's shadow is looked up once.
+#include "screen/bounces/volume/slots.shared.h"
+#define SUBLIGHTS_SLOT SIDE_SUBLIGHTS_SLOT
 #include "screen/lights/resample/sublights.glsl"
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-#include "screen/visibility/area_maps/virtual_area_light.shared.h"
-#include "shared/virtual_light.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "screen/visibility/area_maps/area_light_shadow.glsl"
+#include "screen/visibility/area_maps/area_lights_block.glsl"
+#include "screen/visibility/area_maps/light_order.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MAX_VIRTUAL_AREA_LIGHTS]; };
-layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
-layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
-layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = GATHERED_EMITTED_SLOT) writeonly buffer Emitted { vec4 emitted_flux[]; };
+layout(std430, binding = GATHERED_PUNCTUAL_SLOT) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
 uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
 

@@ -1,12 +1,12 @@
-// Light of the sub-lights of virtual lights on what is near those (shared/near_light.shared.h). SUBLIGHTS_BINDING: of their
-// buffer.
+// Light of the sub-lights of virtual lights on what is near those (shared/near_light.shared.h). The including file
+// defines SUBLIGHTS_SLOT, where their buffer is bound.
 #ifndef VOLGI_SUBLIGHTS_GLSL
 #define VOLGI_SUBLIGHTS_GLSL
 #include "shared/disk_to_point.glsl"
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 
-layout(std430, binding = SUBLIGHTS_BINDING) readonly buffer SubLights { SubLight sublights[]; };
+layout(std430, binding = SUBLIGHTS_SLOT) readonly buffer SubLights { SubLight sublights[]; };
 
 struct Receiver {
   vec3 position, normal, geometric;
