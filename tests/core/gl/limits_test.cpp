@@ -1,4 +1,4 @@
-// core/gl: limits are compared and named, and cover what shaders declare.
+// core/gl: limits are compared and named, and cover what shaders declare; slots have names.
 #include "core/gl/limits.h"
 
 #include <algorithm>
@@ -183,6 +183,23 @@ TEST(Limits, SeeSlotsByTheirNames) {
   EXPECT_EQ(all.uniforms.count(), 0);
   EXPECT_EQ(all.images.end(), 4);
   EXPECT_EQ(all.samplers.end(), 17);
+}
+
+/// A slot is written in one shared header, from which the program and the shaders have it.
+TEST(Slots, HaveNamesThatMeanOneNumber) {
+  static const std::regex literal(R"(binding = \d)");
+  static const std::regex name(R"(#define (\w+_(?:SLOT|BLOCK|UNIT|IMAGE)) )");
+  std::set<std::string> names;
+  for (const gl::ShaderFile& file : gl::shader_files()) {
+    SCOPED_TRACE(std::string(file.name));
+    const std::string text(file.text);
+    EXPECT_FALSE(std::regex_search(text, literal));
+    if (!file.name.ends_with(".shared.h")) continue;
+    for (std::sregex_iterator it(text.begin(), text.end(), name), none; it != none; ++it) {
+      EXPECT_TRUE(names.insert((*it)[1]).second) << (*it)[1] << " is defined elsewhere, too";
+    }
+  }
+  EXPECT_GT(names.size(), 80u) << "the pattern must find something";
 }
 
 }  // namespace
