@@ -3,6 +3,7 @@
 #include <array>
 
 #include "propagation/bounce_rules.h"
+#include "shaders/propagation/slots.shared.h"
 #include "shaders/shared/bounce_state.shared.h"
 
 namespace volgi {
@@ -50,21 +51,21 @@ size_t BounceSolverGl::bytes_for(std::uint32_t side_capacity) {
 
 void BounceSolverGl::run(const gl::Program& kernel, const VoxelGridGl& voxels, const Powers& powers) {
   voxels.bind();
-  powers.received.bind_storage(6);
-  powers.sent.bind_storage(7);
-  powers.total.bind_storage(8);
-  source_.bind_storage(9);
-  partials_.bind_storage(10);
-  state_.bind_storage(11);
-  residual_.bind_storage(12);
+  powers.received.bind_storage(RECEIVED_SLOT);
+  powers.sent.bind_storage(SENT_SLOT);
+  powers.total.bind_storage(TOTAL_SLOT);
+  source_.bind_storage(SOURCE_SLOT);
+  partials_.bind_storage(PARTIALS_SLOT);
+  state_.bind_storage(STATE_SLOT);
+  residual_.bind_storage(RESIDUAL_SLOT);
   kernel.use();
   glDispatchCompute(BOUNCE_PARTIALS, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void BounceSolverGl::add_up(int sums) {
-  partials_.bind_storage(10);
-  state_.bind_storage(11);
+  partials_.bind_storage(PARTIALS_SLOT);
+  state_.bind_storage(STATE_SLOT);
   scalars_kernel_.use();
   scalars_kernel_.set("sums", sums);
   glDispatchCompute(1, 1, 1);
@@ -72,16 +73,16 @@ void BounceSolverGl::add_up(int sums) {
 }
 
 void BounceSolverGl::forget_other_sides(const VoxelGridGl& voxels, const Powers& powers) {
-  powers.direct.bind_storage(13);
-  last_count_.bind_storage(14);
+  powers.direct.bind_storage(FIRST_ARRIVAL_SLOT);
+  last_count_.bind_storage(LAST_COUNT_SLOT);
   run(reset_kernel_, voxels, powers);
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(voxels.side_count.id(), last_count_.id(), 0, 0, sizeof(std::uint32_t));
 }
 
 void BounceSolverGl::set_source(const VoxelGridGl& voxels, const Powers& powers, const gl::Buffer& punctual) {
-  powers.direct.bind_storage(13);
-  punctual.bind_storage(14);
+  powers.direct.bind_storage(FIRST_ARRIVAL_SLOT);
+  punctual.bind_storage(SOURCE_PUNCTUAL_SLOT);
   run(source_kernel_, voxels, powers);
   add_up(BOUNCE_SUMS_SOURCE);
 }

@@ -3,12 +3,15 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "shaders/propagation/partial_sums.shared.h"
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi {
 
 namespace {
 
-constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+constexpr size_t kPartialsBytes = PARTIAL_SUMS * sizeof(glm::vec4);
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -64,25 +67,25 @@ void BouncesGl::make_room(const Run& run) {
 void BouncesGl::next_order(const VoxelGridGl& voxels, const gl::Buffer& total, const gl::Buffer* source,
                            bool already_reflected) {
   voxels.bind();
-  received_.bind_storage(6);
-  sent_.bind_storage(7);
-  total.bind_storage(8);
-  if (source != nullptr) source->bind_storage(9);
+  received_.bind_storage(RECEIVED_SLOT);
+  sent_.bind_storage(SENT_SLOT);
+  total.bind_storage(TOTAL_SLOT);
+  if (source != nullptr) source->bind_storage(SOURCE_SLOT);
   next_order_.use();
   next_order_.set("add_source", int(source != nullptr));
   next_order_.set("already_reflected", int(already_reflected));
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
 void BouncesGl::request_sent(const VoxelGridGl& voxels) {
   voxels.bind();
-  sent_.bind_storage(7);
-  partials_.bind_storage(10);
+  sent_.bind_storage(SENT_SLOT);
+  partials_.bind_storage(PARTIALS_SLOT);
   sum_sent_.use();
-  glDispatchCompute(64, 1, 1);
+  glDispatchCompute(PARTIAL_SUMS, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  sum_.bind_storage(11);
+  sum_.bind_storage(SUM_SLOT);
   sum_partials_.use();
   glDispatchCompute(1, 1, 1);
   readback_.push(sum_);
@@ -275,13 +278,13 @@ gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) co
   gl::Buffer all(sizeof(glm::vec4) * size_t(capacity_));
   all.clear();
   voxels.bind();
-  received_direct_.bind_storage(6);
-  received_indirect_.bind_storage(7);
-  flux.emitted().bind_storage(8);
-  flux.punctual().bind_storage(9);
-  all.bind_storage(10);
+  received_direct_.bind_storage(TOTAL_DIRECT_SLOT);
+  received_indirect_.bind_storage(TOTAL_INDIRECT_SLOT);
+  flux.emitted().bind_storage(EMITTED_FLUX_SLOT);
+  flux.punctual().bind_storage(PUNCTUAL_FLUX_SLOT);
+  all.bind_storage(TOTAL_SENT_SLOT);
   kernel.use();
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   return all;
 }

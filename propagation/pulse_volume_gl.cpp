@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "shaders/propagation/partial_sums.shared.h"
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi {
 
 namespace {
 
-constexpr glm::ivec3 kLocal{8, 8, 4};  // pulse_*.comp.glsl, add_radiance.comp.glsl
+constexpr glm::ivec3 kLocal{CELL_GROUP_X, CELL_GROUP_Y, CELL_GROUP_Z};
 
-constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+constexpr size_t kPartialsBytes = PARTIAL_SUMS * sizeof(glm::vec4);
 
 /// A state of lobes: the three bands' stacked in z (lobes.glsl).
 glm::ivec3 lobe_texels(const Grid& grid, int order) {
@@ -58,10 +61,10 @@ void PulseVolumeGl::dispatch_cells() const {
 void PulseVolumeGl::inject(const VoxelGridGl& voxels, const Cells& cells, const gl::Buffer& side_flux) {
   voxels.bind();
   if (!by_max()) sum_side_flux(side_flux);
-  side_flux.bind_storage(7);
-  cells.normal_occupancy.bind(2);
-  cells.emission.bind(3);
-  lobes_[current_].bind_image(0, GL_WRITE_ONLY);
+  side_flux.bind_storage(SIDE_FLUX_SLOT);
+  cells.normal_occupancy.bind(NORMAL_OCCUPANCY_UNIT);
+  cells.emission.bind(CELL_EMISSION_UNIT);
+  lobes_[current_].bind_image(NEXT_LOBES_IMAGE, GL_WRITE_ONLY);
   inject_.use();
   dispatch_cells();
   if (by_max()) sum_in_flight();  // what surfaces send is not what goes in
@@ -73,8 +76,8 @@ BounceReport PulseVolumeGl::run(const VoxelGridGl& voxels, const Cells& cells, c
   inject(voxels, cells, side_flux);
   accumulated_[current_].clear({0.0f, 0.0f, 0.0f, 0.0f});
   if (options_.scheme == Scheme::gaitatzes2010) {
-    cells.normal_occupancy.bind(2);
-    cells.albedo.bind(3);
+    cells.normal_occupancy.bind(NORMAL_OCCUPANCY_UNIT);
+    cells.albedo.bind(CELL_ALBEDO_UNIT);
     pass_.set("constant_albedo", int(options_.constant_albedo));
   }
   for (int i = 0; i < iterations; ++i) pass();
@@ -91,21 +94,21 @@ BounceReport PulseVolumeGl::run(const VoxelGridGl& voxels, const Cells& cells, c
 }
 
 void PulseVolumeGl::pass() {
-  lobes_[current_].bind(0);
-  accumulated_[current_].bind(1);
-  lobes_[1 - current_].bind_image(0, GL_WRITE_ONLY);
-  accumulated_[1 - current_].bind_image(1, GL_WRITE_ONLY);
+  lobes_[current_].bind(LOBES_UNIT);
+  accumulated_[current_].bind(ACCUMULATED_UNIT);
+  lobes_[1 - current_].bind_image(NEXT_LOBES_IMAGE, GL_WRITE_ONLY);
+  accumulated_[1 - current_].bind_image(NEXT_ACCUMULATED_IMAGE, GL_WRITE_ONLY);
   pass_.use();
   dispatch_cells();
   current_ = 1 - current_;
 }
 
 void PulseVolumeGl::sum_side_flux(const gl::Buffer& side_flux) {
-  side_flux.bind_storage(7);
-  partials_.bind_storage(10);
-  sum_.bind_storage(11);
+  side_flux.bind_storage(SENT_SLOT);
+  partials_.bind_storage(PARTIALS_SLOT);
+  sum_.bind_storage(SUM_SLOT);
   sum_sent_.use();
-  glDispatchCompute(64, 1, 1);
+  glDispatchCompute(PARTIAL_SUMS, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_partials_.use();
   glDispatchCompute(1, 1, 1);
@@ -113,11 +116,11 @@ void PulseVolumeGl::sum_side_flux(const gl::Buffer& side_flux) {
 }
 
 void PulseVolumeGl::sum_in_flight() {
-  lobes_[current_].bind(0);
-  partials_.bind_storage(10);
-  sum_.bind_storage(11);
+  lobes_[current_].bind(LOBES_UNIT);
+  partials_.bind_storage(PARTIALS_SLOT);
+  sum_.bind_storage(SUM_SLOT);
   sum_lobes_.use();
-  glDispatchCompute(64, 1, 1);
+  glDispatchCompute(PARTIAL_SUMS, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_partials_.use();
   glDispatchCompute(1, 1, 1);
@@ -126,8 +129,8 @@ void PulseVolumeGl::sum_in_flight() {
 
 void PulseVolumeGl::read_out() {
   radiance_.sh.clear({0.0f, 0.0f, 0.0f, 0.0f});
-  accumulated_[current_].bind(0);
-  radiance_.sh.bind_image(0, GL_READ_WRITE);
+  accumulated_[current_].bind(LOBES_UNIT);
+  radiance_.sh.bind_image(LOBES_RADIANCE_IMAGE, GL_READ_WRITE);
   add_radiance_.use();
   // gaitatzes2010 accumulates what leaves surfaces; pixels read what arrives there.
   add_radiance_.set("odd_sign", options_.scheme == Scheme::gaitatzes2010 ? -1.0f : 1.0f);

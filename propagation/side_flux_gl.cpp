@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi {
 
 namespace {
@@ -36,21 +39,21 @@ void SideFluxGl::begin(const VoxelGridGl& voxels) {
 void SideFluxGl::begin_source(const VoxelGridGl& voxels, const gl::Program& program, float source_power) {
   source_power_ = std::max(source_power, 1e-30f);
   voxels.bind();
-  fixed_.bind_storage(12);
-  fixed_lost_.bind_storage(13);
+  fixed_.bind_storage(FLUX_FIXED_SLOT);
+  fixed_lost_.bind_storage(FLUX_LOST_SLOT);
   program.set("source_power", source_power_);
 }
 
 void SideFluxGl::collect(const VoxelGridGl& voxels, const gl::Buffer& into) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   voxels.bind();
-  fixed_.bind_storage(12);
-  fixed_lost_.bind_storage(13);
-  into.bind_storage(9);
-  lost_.bind_storage(11);
+  fixed_.bind_storage(FLUX_FIXED_SLOT);
+  fixed_lost_.bind_storage(FLUX_LOST_SLOT);
+  into.bind_storage(SOURCE_SLOT);
+  lost_.bind_storage(LOST_SLOT);
   collect_.use();
   collect_.set("source_power", source_power_);
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
@@ -69,10 +72,10 @@ void SideFluxGl::inject_emitters(const VoxelGridGl& voxels, const std::vector<Fl
   }
   gl::put(pieces_, packed);
   begin_source(voxels, inject_emitters_, float(std::max({total.x, total.y, total.z})));
-  pieces_.bind_storage(14);
+  pieces_.bind_storage(PIECES_SLOT);
   inject_emitters_.use();
   inject_emitters_.set("piece_count", int(pieces.size()));
-  gl::dispatch_linear(pieces.size(), 64);
+  gl::dispatch_linear(pieces.size(), LINEAR_GROUP);
   collect(voxels, apart ? emitted_ : punctual_);
 }
 

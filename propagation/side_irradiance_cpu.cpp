@@ -8,8 +8,6 @@ namespace volgi {
 
 namespace {
 
-constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
-
 using Around = std::bitset<27>;  // the 3^3 cells around one
 
 size_t around_index(glm::ivec3 d) { return size_t(d.x + 1) + 3 * size_t(d.y + 1) + 9 * size_t(d.z + 1); }
@@ -78,7 +76,7 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
       const glm::uvec2 own = voxels.cell_sides(centre + around_offset(k));
       const size_t last = own.x + shared::count_bits(own.y & 63u);
       for (size_t s = own.x; s < last; ++s) {
-        if (glm::dot(sides[s].normal, sides[i].normal) < kSimilarNormalCosine) continue;
+        if (glm::dot(sides[s].normal, sides[i].normal) < SIMILAR_NORMAL_COSINE) continue;
         first.add(direct[s], weight_of(sides[s]));
         rest.add(indirect[s], weight_of(sides[s]));
       }

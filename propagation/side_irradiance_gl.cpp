@@ -1,5 +1,8 @@
 #include "propagation/side_irradiance_gl.h"
 
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi {
 
 SideIrradianceGl::SideIrradianceGl()
@@ -16,19 +19,19 @@ void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, co
     }
   }
   voxels.bind();
-  bounces.received_direct().bind_storage(6);
-  bounces.received_indirect().bind_storage(7);
-  flux.emitted().bind_storage(8);
-  flux.punctual().bind_storage(9);
-  raw_direct_.bind_storage(10);
-  raw_indirect_.bind_storage(11);
+  bounces.received_direct().bind_storage(TOTAL_DIRECT_SLOT);
+  bounces.received_indirect().bind_storage(TOTAL_INDIRECT_SLOT);
+  flux.emitted().bind_storage(EMITTED_FLUX_SLOT);
+  flux.punctual().bind_storage(PUNCTUAL_FLUX_SLOT);
+  raw_direct_.bind_storage(WEIGHTED_DIRECT_SLOT);
+  raw_indirect_.bind_storage(WEIGHTED_INDIRECT_SLOT);
   side_irradiance_.use();
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  direct_.bind_storage(6);
-  indirect_.bind_storage(7);
+  direct_.bind_storage(DIRECT_IRRADIANCE_SLOT);
+  indirect_.bind_storage(INDIRECT_IRRADIANCE_SLOT);
   smooth_.use();
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

@@ -4,11 +4,15 @@
 
 #include <algorithm>
 
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/propagation/sweep.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi {
 
 namespace {
 
-constexpr int kColumnsPerRow = 1024;  // sweep_radiance.comp.glsl
+constexpr int kColumnsPerRow = 1 << DIAGONAL_ROW_BITS;
 
 int texels_of(const OrdinateSet& set) { return (3 * int(set.directions.size()) + 3) / 4; }
 
@@ -75,11 +79,11 @@ void SweepRadianceGl::list_diagonals() {
 
 RadianceVolumeGl SweepRadianceGl::run(const gl::Texture& cell_word, const gl::Texture& side_light) {
   RadianceVolumeGl result(grid_, 4);
-  shares_.bind_uniform(1);
-  cell_word.bind(1);
-  side_light.bind(2);
-  column_map_.bind(3);
-  result.sh.bind_image(1, GL_READ_WRITE);
+  shares_.bind_uniform(SHARES_BLOCK);
+  cell_word.bind(CELL_WORD_UNIT);
+  side_light.bind(SIDE_LIGHT_UNIT);
+  column_map_.bind(COLUMN_MAP_UNIT);
+  result.sh.bind_image(SWEEP_RADIANCE_IMAGE, GL_READ_WRITE);
   for (int octant = 0; octant < 8; ++octant) sweep(octant);  // no two may write one cell
   return result;
 }
@@ -92,9 +96,9 @@ void SweepRadianceGl::sweep(int octant) {
     program_.set("diagonal", int(diagonal));
     program_.set("first_cell", first_cell_[diagonal]);
     program_.set("cell_count", count);
-    planes_[(diagonal + 1) & 1].bind(0);
-    planes_[diagonal & 1].bind_image(0, GL_WRITE_ONLY);
-    gl::dispatch({count, 1, 1}, {64, 1, 1});
+    planes_[(diagonal + 1) & 1].bind(BEFORE_PLANE_UNIT);
+    planes_[diagonal & 1].bind_image(THIS_PLANE_IMAGE, GL_WRITE_ONLY);
+    gl::dispatch({count, 1, 1}, {LINEAR_GROUP, 1, 1});
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
 }

@@ -4,14 +4,18 @@
 
 #include <algorithm>
 
+#include "shaders/propagation/partial_sums.shared.h"
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi {
 
 namespace {
 
-constexpr glm::ivec3 kLocal{8, 8, 4};  // propagate.comp.glsl, emit.comp.glsl
+constexpr glm::ivec3 kLocal{CELL_GROUP_X, CELL_GROUP_Y, CELL_GROUP_Z};
 constexpr int kBatch = 8;  // passes between two looks at the power in flight: a look costs a third of a pass
 
-constexpr size_t kPartialsBytes = 64 * sizeof(glm::vec4);
+constexpr size_t kPartialsBytes = PARTIAL_SUMS * sizeof(glm::vec4);
 
 /// A state of lobes: the three bands' stacked in z (lobes.glsl).
 glm::ivec3 lobe_texels(const Grid& grid, int order) {
@@ -76,8 +80,8 @@ bool ConservativeTransportGl::advance_order(const VoxelGridGl& voxels, const gl:
 
 void ConservativeTransportGl::emit(const VoxelGridGl& voxels, const gl::Buffer& sent) {
   voxels.bind();
-  sent.bind_storage(7);
-  lobes_[current_].bind_image(0, GL_WRITE_ONLY);
+  sent.bind_storage(SENT_SLOT);
+  lobes_[current_].bind_image(NEXT_LOBES_IMAGE, GL_WRITE_ONLY);
   emit_.use();
   gl::dispatch(grid_.cells, kLocal);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
@@ -86,12 +90,12 @@ void ConservativeTransportGl::emit(const VoxelGridGl& voxels, const gl::Buffer& 
 void ConservativeTransportGl::advance(const VoxelGridGl& voxels, const gl::Buffer& received, int passes,
                                       bool reflect_hits) {
   voxels.bind();
-  received.bind_storage(6);
+  received.bind_storage(RECEIVED_SLOT);
   propagate_.use();
   propagate_.set("reflect_hits", int(reflect_hits));
   for (int pass = 0; pass < passes; ++pass) {
-    lobes_[current_].bind(0);
-    lobes_[1 - current_].bind_image(0, GL_WRITE_ONLY);
+    lobes_[current_].bind(LOBES_UNIT);
+    lobes_[1 - current_].bind_image(NEXT_LOBES_IMAGE, GL_WRITE_ONLY);
     gl::dispatch(grid_.cells, kLocal);
     glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     current_ = 1 - current_;
@@ -100,12 +104,12 @@ void ConservativeTransportGl::advance(const VoxelGridGl& voxels, const gl::Buffe
 
 void ConservativeTransportGl::sum_in_flight(const VoxelGridGl& voxels) {
   voxels.bind();
-  lobes_[current_].bind(0);
-  partials_.bind_storage(10);
+  lobes_[current_].bind(LOBES_UNIT);
+  partials_.bind_storage(PARTIALS_SLOT);
   sum_lobes_.use();
-  glDispatchCompute(64, 1, 1);
+  glDispatchCompute(PARTIAL_SUMS, 1, 1);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  sum_.bind_storage(11);
+  sum_.bind_storage(SUM_SLOT);
   sum_partials_.use();
   glDispatchCompute(1, 1, 1);
 }
@@ -145,8 +149,8 @@ RadianceVolumeGl ConservativeTransportGl::radiance(const VoxelGridGl& voxels, co
   const glm::vec3 start = in_flight(voxels);
   for (int passes = 0; passes < max_passes(grid_); ++passes) {
     voxels.bind();
-    lobes_[current_].bind(0);
-    result.sh.bind_image(0, GL_READ_WRITE);
+    lobes_[current_].bind(LOBES_UNIT);
+    result.sh.bind_image(LOBES_RADIANCE_IMAGE, GL_READ_WRITE);
     add_radiance_->use();
     add_radiance_->set("odd_sign", 1.0f);
     add_radiance_->set("stored_rescaled", 1);

@@ -4,15 +4,18 @@
 
 #include <algorithm>
 
+#include "shaders/propagation/slots.shared.h"
+#include "shaders/propagation/sweep.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi {
 
 namespace {
 
-constexpr int kSidesPerRow = 1024;  // side_texel.glsl
-constexpr int kArrivedARow = 256;   // side_texel.glsl
-constexpr int kOctantsOfSide = 4;   // that can reach it
-constexpr int kBlocksARow = 1024;   // sweep.comp.glsl
-constexpr int kBlock = 8;           // sweep.comp.glsl: cells on an edge
+constexpr int kSidesPerRow = 1 << SIDE_ROW_BITS;
+constexpr int kArrivedARow = 1 << ARRIVED_ROW_BITS;
+constexpr int kOctantsOfSide = 4;  // that can reach it
+constexpr int kBlocksARow = 1 << DIAGONAL_ROW_BITS;
 
 int rows(size_t count, int per_row) { return std::max(1, int((count + size_t(per_row) - 1) / size_t(per_row))); }
 
@@ -66,7 +69,7 @@ gl::Buffer OrdinatesTransportGl::pack_shares(const OrdinateSet& set) const {
 
 /// The blocks of every diagonal i+j+k beside each other.
 void OrdinatesTransportGl::list_blocks() {
-  const glm::ivec3 n = (grid_.cells + (kBlock - 1)) / kBlock;
+  const glm::ivec3 n = (grid_.cells + (SWEEP_BLOCK - 1)) / SWEEP_BLOCK;
   std::vector<std::uint32_t> blocks;
   for (int diagonal = 0; diagonal <= n.x + n.y + n.z - 3; ++diagonal) {
     first_block_.push_back(int(blocks.size()));
@@ -91,21 +94,21 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
     arrived_ = gl::Texture::make_2d(GL_R32F, kArrivedARow * kOctantsOfSide * lanes_, rows(capacity_, kArrivedARow));
   }
   voxels.bind();
-  sent.bind_storage(7);
-  cell_word_.bind_image(0, GL_WRITE_ONLY);
-  side_light_.bind_image(1, GL_WRITE_ONLY);
+  sent.bind_storage(SENT_SLOT);
+  cell_word_.bind_image(CELL_WORD_IMAGE, GL_WRITE_ONLY);
+  side_light_.bind_image(SIDE_LIGHT_IMAGE, GL_WRITE_ONLY);
   prepare_.use();
-  gl::dispatch_linear(std::max<size_t>(capacity_, cell_count(grid_)), 64);
+  gl::dispatch_linear(std::max<size_t>(capacity_, cell_count(grid_)), LINEAR_GROUP);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 void OrdinatesTransportGl::sweep() {
-  shares_.bind_storage(6);
-  cell_word_.bind(1);
-  side_light_.bind(2);
-  block_list_.bind(3);
-  for (GLuint axis = 0; axis < 3; ++axis) faces_[axis].bind_image(axis, GL_READ_WRITE);
-  arrived_.bind_image(3, GL_WRITE_ONLY);
+  shares_.bind_storage(SHARES_SLOT);
+  cell_word_.bind(CELL_WORD_UNIT);
+  side_light_.bind(SIDE_LIGHT_UNIT);
+  block_list_.bind(BLOCK_LIST_UNIT);
+  for (GLuint axis = 0; axis < 3; ++axis) faces_[axis].bind_image(FACES_IMAGE + axis, GL_READ_WRITE);
+  arrived_.bind_image(ARRIVED_IMAGE, GL_WRITE_ONLY);
   sweep_.use();
   for (size_t diagonal = 0; diagonal + 1 < first_block_.size(); ++diagonal) {
     sweep_.set("first_block", first_block_[diagonal]);
@@ -119,11 +122,11 @@ void OrdinatesTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& se
                                  const BounceRules& /*rules*/, BounceReport& report) {
   prepare(voxels, sent);
   sweep();
-  arrived_.bind(0);
-  received.bind_storage(6);
+  arrived_.bind(ARRIVED_UNIT);
+  received.bind_storage(RECEIVED_SLOT);
   collect_.use();
   collect_.set("lanes", lanes_);
-  gl::dispatch_linear(capacity_, 64);
+  gl::dispatch_linear(capacity_, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   report.passes += 1;
 }

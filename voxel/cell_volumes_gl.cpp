@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/gl/raster_state.h"
+#include "shaders/shared/group_sizes.shared.h"
+#include "shaders/voxel/slots.shared.h"
 
 namespace volgi {
 
@@ -21,20 +23,20 @@ CellVolumesGl::CellVolumesGl(const Grid& grid)
 
 void CellVolumesGl::run(const gl::SceneBuffers& scene, gl::PassTimer& timer) {
   auto scope = timer.scope("voxel/cell_volumes");
-  grid_block_.bind_uniform(0);
+  grid_block_.bind_uniform(GRID_BLOCK);
   for (GLuint i = 0; i < GLuint(sums_.size()); ++i) {
     sums_[i].clear();
-    sums_[i].bind_storage(i);
+    sums_[i].bind_storage(CELL_SUMS_SLOT + i);
   }
   gl::begin_fullscreen_pass();
   columns_.bind();
   scene.draw(sum_);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  normal_occupancy_.bind_image(0, GL_WRITE_ONLY);
-  albedo_.bind_image(1, GL_WRITE_ONLY);
-  emission_.bind_image(2, GL_WRITE_ONLY);
+  normal_occupancy_.bind_image(NORMAL_OCCUPANCY_IMAGE, GL_WRITE_ONLY);
+  albedo_.bind_image(CELL_ALBEDO_IMAGE, GL_WRITE_ONLY);
+  emission_.bind_image(CELL_EMISSION_IMAGE, GL_WRITE_ONLY);
   resolve_.use();
-  gl::dispatch(grid_.cells, {8, 8, 4});
+  gl::dispatch(grid_.cells, {CELL_GROUP_X, CELL_GROUP_Y, CELL_GROUP_Z});
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 

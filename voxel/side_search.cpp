@@ -22,10 +22,9 @@ constexpr std::array<std::uint8_t, 32> kBitCount = [] {
   return count;
 }();
 
-constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
-constexpr float kOneLayer = 0.02f;                   // cells: layers nearer than this count as one
-constexpr float kFarthest = 3.0f;                    // cells along the axis
-constexpr float kMinShare = 1e-3f;                   // of the normal along an axis that is asked
+constexpr float kOneLayer = 0.02f;  // cells: layers nearer than this count as one
+constexpr float kFarthest = 3.0f;   // cells along the axis
+constexpr float kMinShare = 1e-3f;  // of the normal along an axis that is asked
 
 /// Whether a depth on the axis is farther than that from all points of a cell.
 bool farther(float low, float depth) { return !(std::max(low - depth, depth - (low + 1.0f)) <= kFarthest); }
@@ -177,7 +176,7 @@ inline bool SideSearch::look(const Column& column, std::uint32_t three, const Pl
       found.facing_varies |= !all_near;
       if (near) found.facing = int(index);
     }
-    if (!(cosine >= kSimilarNormalCosine)) continue;
+    if (!(cosine >= SIMILAR_NORMAL_COSINE)) continue;
     found.alike_varies |= !all_near;
     if (!near) continue;
     found.alike = int(index);
@@ -205,7 +204,7 @@ inline int SideSearch::side_at_once(const Column& column, int way) const {
   const shared::Side& side = voxels_.sides()[index];
   const bool good = (side.front == fronts_[way] || fronts_[way] < 0) &&
                     (fronts_[way] < 0 || (side.depth - column.depth) * side.normal[axis] <= kOneLayer) &&
-                    glm::dot(side.normal, normals_[way]) >= kSimilarNormalCosine;
+                    glm::dot(side.normal, normals_[way]) >= SIMILAR_NORMAL_COSINE;
   return good ? int(index) : -1;
 }
 

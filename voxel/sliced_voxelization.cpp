@@ -5,13 +5,14 @@
 #include <cassert>
 
 #include "core/gl/raster_state.h"
+#include "shaders/shared/group_sizes.shared.h"
+#include "shaders/voxel/groups.shared.h"
+#include "shaders/voxel/slots.shared.h"
 
 namespace volgi {
 
 namespace {
 
-constexpr int kGroup = 256;                     // cells or faces of a group in coverage, list_sides_*.comp.glsl
-constexpr int kLanes = 32;                      // that share out a group's faces in coverage, list_sides_fill
 constexpr size_t kSurfaceBytes = 2 * 48;        // surfaces.glsl, of a face
 constexpr float kFootprintAlpha = 1.0f / 3.0f;  // cells: alpha belongs to a fine line,
 constexpr float kFootprintAlbedo = 1.0f;        // albedo to a face
@@ -22,8 +23,10 @@ void dispatch_in_turn(size_t count, size_t group_size) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-/// kLanes invocations to every kGroup of the faces.
-void dispatch_shared_out(size_t count) { dispatch_in_turn((count + kGroup - 1) / kGroup * kLanes, kLanes); }
+/// FACE_LANES invocations to every VOXEL_GROUP of the faces.
+void dispatch_shared_out(size_t count) {
+  dispatch_in_turn((count + VOXEL_GROUP - 1) / VOXEL_GROUP * FACE_LANES, FACE_LANES);
+}
 
 bool has_alpha(const gl::SceneBuffers& scene) {
   return std::any_of(scene.materials().begin(), scene.materials().end(),
@@ -61,7 +64,7 @@ SlicedVoxelization::SlicedVoxelization(const Grid& grid, VoxelizationOptions opt
   wanted_buffer_ = gl::Buffer(sizeof(Wanted));
   wanted_buffer_.clear();
   counted_ = std::make_unique<gl::Readback>(sizeof(Wanted), 1);
-  groups_ = int((cell_count(grid) + kGroup - 1) / kGroup);
+  groups_ = int((cell_count(grid) + VOXEL_GROUP - 1) / VOXEL_GROUP);
   group_totals_ = gl::Buffer(sizeof(std::uint32_t) * size_t(groups_));
   for (int axis = 0; axis < 3; ++axis) {
     Family& f = families_[size_t(axis)];
@@ -124,21 +127,24 @@ void SlicedVoxelization::mark(const gl::SceneBuffers& scene, int first_axis, int
   if (!program) program = gl::Program::raster(base_name(), alpha_define(alpha_));
   program->set("footprint", kFootprintAlpha);
   raster(scene, *program, first_axis, last_axis,
-         {&Family::key_low, &Family::key_high, &Family::blocked, &Family::haze});
+         {{KEY_LOW_PLACE, &Family::key_low},
+          {KEY_HIGH_PLACE, &Family::key_high},
+          {BLOCKED_PLACE, &Family::blocked},
+          {HAZE_PLACE, &Family::haze}});
 }
 
-/// Draws the scene once for each axis or, in a single pass, for all. Buffers are bound role by role, families within.
+/// Draws the scene once for each axis or, in a single pass, for all. Buffers are bound by their places, families
+/// within.
 void SlicedVoxelization::raster(const gl::SceneBuffers& scene, const gl::Program& program, int first_axis,
-                                int last_axis, std::initializer_list<gl::Buffer Family::*> buffers) {
-  voxels_.grid_block.bind_uniform(0);
+                                int last_axis, std::initializer_list<PlacedBuffer> buffers) {
+  voxels_.grid_block.bind_uniform(GRID_BLOCK);
   program.set("triangle_bits", std::max(8, int(std::bit_width(scene.triangle_count()))));
   const int at_once = method_ == VoxelizationMethod::single_pass ? 3 : 1;
   for (int axis = first_axis; axis <= last_axis; axis += at_once) {
-    GLuint binding = 0;
-    for (const auto buffer : buffers) {
-      for (int family = axis; family < axis + at_once; ++family, ++binding) {
-        const gl::Buffer& b = families_[size_t(family)].*buffer;
-        if (b.bytes() > 0) b.bind_storage(binding);
+    for (const auto& [place, buffer] : buffers) {
+      for (int family = 0; family < at_once; ++family) {
+        const gl::Buffer& b = families_[size_t(axis + family)].*buffer;
+        if (b.bytes() > 0) b.bind_storage(GLuint(place * at_once + family));
       }
     }
     program.set("axis", axis);
@@ -168,54 +174,57 @@ void SlicedVoxelization::make_room_for_surfaces(int axis) {
 void SlicedVoxelization::number_surfaces(int axis) {
   Family& f = families_[size_t(axis)];
   wanted_buffer_.fill(0, 1, size_t(axis));
-  f.key_low.bind_storage(0);
-  f.entries.bind_storage(1);
-  wanted_buffer_.bind_storage(2);
+  f.key_low.bind_storage(NUMBER_KEY_LOW_SLOT);
+  f.entries.bind_storage(NUMBER_ENTRIES_SLOT);
+  wanted_buffer_.bind_storage(WANTED_SLOT);
   number_.use();
   number_.set("axis", axis);
   number_.set("capacity", GLuint(f.capacity));
-  dispatch_in_turn(faces(voxels_.grid, axis), 256);
+  dispatch_in_turn(faces(voxels_.grid, axis), VOXEL_GROUP);
 }
 
 void SlicedVoxelization::write_surfaces(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
   write_.set("footprint", kFootprintAlbedo);
   raster(scene, write_, first_axis, last_axis,
-         {&Family::key_low, &Family::key_high, &Family::entries, &Family::surfaces});
+         {{KEY_LOW_PLACE, &Family::key_low},
+          {KEY_HIGH_PLACE, &Family::key_high},
+          {ENTRIES_PLACE, &Family::entries},
+          {SURFACES_PLACE, &Family::surfaces}});
 }
 
 void SlicedVoxelization::find_coverage() {
-  voxels_.grid_block.bind_uniform(0);
-  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].blocked.bind_storage(axis);
+  voxels_.grid_block.bind_uniform(GRID_BLOCK);
+  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].blocked.bind_storage(COVERAGE_BLOCKED_SLOT + axis);
   coverage_.use();
   coverage_.set("has_haze", int(alpha_));
   for (int axis = 0; axis < 3; ++axis) {
     const Family& f = families_[size_t(axis)];
-    (alpha_ ? f.haze : f.key_low).bind_storage(3);
-    f.key_low.bind_storage(4);
-    f.coverage.bind_storage(5);
+    (alpha_ ? f.haze : f.key_low).bind_storage(COVERAGE_HAZE_SLOT);
+    f.key_low.bind_storage(COVERAGE_KEY_LOW_SLOT);
+    f.coverage.bind_storage(COVERAGE_SLOT);
     coverage_.set("axis", axis);
     dispatch_shared_out(faces(voxels_.grid, axis));
   }
 }
 
 void SlicedVoxelization::list_sides() {
-  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].coverage.bind_storage(axis);
-  voxels_.cell_sides.bind_storage(3);
-  group_totals_.bind_storage(4);
+  for (GLuint axis = 0; axis < 3; ++axis) families_[axis].coverage.bind_storage(LIST_COVERAGE_SLOT + axis);
+  voxels_.cell_sides.bind_storage(CELL_SIDES_SLOT);
+  group_totals_.bind_storage(GROUP_TOTALS_SLOT);
   count_.use();
-  dispatch_in_turn(cell_count(voxels_.grid), kGroup);
+  dispatch_in_turn(cell_count(voxels_.grid), VOXEL_GROUP);
   const gl::Buffer& sides = scan_.run(group_totals_, size_t(groups_));
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   glCopyNamedBufferSubData(sides.id(), wanted_buffer_.id(), 0, 3 * sizeof(std::uint32_t), sizeof(std::uint32_t));
   make_room_for_sides();
-  voxels_.grid_block.bind_uniform(0);
-  wanted_buffer_.bind_storage(2);
-  voxels_.cell_sides.bind_storage(3);
-  group_totals_.bind_storage(4);
-  voxels_.side_count.bind_storage(5);
+  voxels_.grid_block.bind_uniform(GRID_BLOCK);
+  wanted_buffer_.bind_storage(WANTED_SLOT);
+  voxels_.cell_sides.bind_storage(CELL_SIDES_SLOT);
+  group_totals_.bind_storage(GROUP_TOTALS_SLOT);
+  voxels_.side_count.bind_storage(SIDE_COUNT_SLOT);
   offset_.use();
   offset_.set("capacity", GLuint(voxels_.side_capacity));
-  dispatch_in_turn(cell_count(voxels_.grid), kGroup);
+  dispatch_in_turn(cell_count(voxels_.grid), VOXEL_GROUP);
 }
 
 void SlicedVoxelization::make_room_for_sides() {
@@ -235,9 +244,9 @@ void SlicedVoxelization::fill_sides() {
   fill_.use();
   for (int axis = 0; axis < 3; ++axis) {
     const Family& f = families_[size_t(axis)];
-    f.entries.bind_storage(0);
-    f.surfaces.bind_storage(1);
-    f.coverage.bind_storage(2);
+    f.entries.bind_storage(FILL_ENTRIES_SLOT);
+    f.surfaces.bind_storage(FILL_SURFACES_SLOT);
+    f.coverage.bind_storage(FILL_COVERAGE_SLOT);
     fill_.set("axis", axis);
     dispatch_shared_out(faces(voxels_.grid, axis));
   }
@@ -248,7 +257,7 @@ void SlicedVoxelization::fill_sides() {
 void SlicedVoxelization::count_area(const gl::SceneBuffers& scene, int first_axis, int last_axis) {
   area_fixed_.clear();
   voxels_.bind();
-  area_fixed_.bind_storage(0);
+  area_fixed_.bind_storage(AREA_FIXED_SLOT);
   auto& program = side_area_[size_t(alpha_)];
   if (!program) program = gl::Program::raster("voxel/side_area", alpha_define(alpha_));
   program->set("footprint", kFootprintAlpha);
@@ -261,10 +270,10 @@ void SlicedVoxelization::count_area(const gl::SceneBuffers& scene, int first_axi
   collect_area_.use();
   for (int axis = first_axis; axis <= last_axis; ++axis) {
     const Family& f = families_[size_t(axis)];
-    f.entries.bind_storage(1);
-    f.surfaces.bind_storage(2);
+    f.entries.bind_storage(AREA_ENTRIES_SLOT);
+    f.surfaces.bind_storage(AREA_SURFACES_SLOT);
     collect_area_.set("axis", axis);
-    dispatch_in_turn(voxels_.side_capacity, 64);
+    dispatch_in_turn(voxels_.side_capacity, LINEAR_GROUP);
   }
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }
@@ -284,7 +293,7 @@ std::uint32_t side_capacity_for(size_t sides) { return with_headroom(std::uint32
 size_t voxelization_bytes(const Grid& grid, const Scene& scene, const ExpectedSides& expected) {
   const bool alpha = std::any_of(scene.materials.begin(), scene.materials.end(),
                                  [](const Material& m) { return m.alpha_mode != AlphaMode::opaque; });
-  size_t sum = 8 * cell_count(grid) + sizeof(std::uint32_t) * (cell_count(grid) / kGroup + 1) + sizeof(Grid);
+  size_t sum = 8 * cell_count(grid) + sizeof(std::uint32_t) * (cell_count(grid) / VOXEL_GROUP + 1) + sizeof(Grid);
   for (int axis = 0; axis < 3; ++axis) sum += (alpha ? 6 : 5) * sizeof(std::uint32_t) * faces(grid, axis);
   sum += kSurfaceBytes * with_headroom(std::uint32_t(expected.faces));
   return sum + size_t(side_capacity_for(expected.sides)) * (sizeof(shared::Side) + sizeof(std::uint32_t));

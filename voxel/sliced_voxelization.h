@@ -55,6 +55,10 @@ class SlicedVoxelization {
     gl::Buffer coverage;
     std::uint32_t capacity = 0;  // of surfaces, in faces
   };
+  struct PlacedBuffer {
+    int place;  // *_PLACE of shaders/voxel/slots.shared.h
+    gl::Buffer Family::*buffer;
+  };
   /// Per axis the faces that surfaces cross, then sides.
   using Wanted = std::array<std::uint32_t, 4>;
 
@@ -64,7 +68,7 @@ class SlicedVoxelization {
   void number_surfaces(int axis);
   void write_surfaces(const gl::SceneBuffers& scene, int first_axis, int last_axis);
   void raster(const gl::SceneBuffers& scene, const gl::Program& program, int first_axis, int last_axis,
-              std::initializer_list<gl::Buffer Family::*> buffers);
+              std::initializer_list<PlacedBuffer> buffers);
   void find_coverage();
   void list_sides();
   void fill_sides();

@@ -3,6 +3,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "shaders/voxel/slots.shared.h"
+
 namespace volgi {
 namespace {
 
@@ -33,10 +35,10 @@ std::vector<glm::uvec2> dense_cell_sides(const VoxelGrid& voxels) {
 }  // namespace
 
 void VoxelGridGl::bind() const {
-  grid_block.bind_uniform(0);
-  cell_sides.bind_storage(3);
-  sides.bind_storage(4);
-  side_count.bind_storage(5);
+  grid_block.bind_uniform(GRID_BLOCK);
+  cell_sides.bind_storage(CELL_SIDES_SLOT);
+  sides.bind_storage(SIDES_SLOT);
+  side_count.bind_storage(SIDE_COUNT_SLOT);
 }
 
 std::vector<shared::Side> VoxelGridGl::download_sides() const {

@@ -12,14 +12,14 @@ namespace volgi {
 /// cell; 64 bytes a side.
 struct VoxelGridGl {
   Grid grid{};
-  gl::Buffer grid_block;  // uniform block 0: Grid
+  gl::Buffer grid_block;  // Grid
   gl::Buffer cell_sides;  // uvec2 per cell
   gl::Buffer sides;       // shared::Side; capacity of at least side_count()
   gl::Buffer side_count;  // one uint, for shaders
   std::uint32_t side_capacity = 0;
 
   size_t bytes() const { return grid_block.bytes() + cell_sides.bytes() + sides.bytes() + side_count.bytes(); }
-  /// Binds what every volume shader reads: uniform block 0; storage 3 cell_sides, 4 sides, 5 side_count.
+  /// Binds all four, as every shader of the volume reads them (shaders/voxel/slots.shared.h).
   void bind() const;
   /// Sides on the CPU, for tests, statistics and export. Waits for the GPU.
   std::vector<shared::Side> download_sides() const;

@@ -11,8 +11,8 @@ namespace {
 size_t blocks_of(size_t count) { return std::max<size_t>(1, (count + SCAN_BLOCK - 1) / SCAN_BLOCK); }
 
 void run(const Program& program, const Buffer& numbers, const Buffer& block_sums, size_t count) {
-  numbers.bind_storage(0);
-  block_sums.bind_storage(1);
+  numbers.bind_storage(SCAN_NUMBERS_SLOT);
+  block_sums.bind_storage(SCAN_BLOCK_SUMS_SLOT);
   program.use();
   program.set("count", GLuint(count));
   dispatch_linear(count, SCAN_BLOCK);

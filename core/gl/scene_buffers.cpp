@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/mipmaps.h"
+#include "shaders/shared/material.shared.h"
 #include "shared/scene_vertex.shared.h"
 
 namespace volgi::gl {
@@ -177,9 +178,12 @@ void SceneBuffers::bind_material(const Program& program, int material) const {
   program.set("material_alpha_mode", static_cast<int>(m.alpha_mode));
   program.set("material_alpha_cutoff", m.alpha_cutoff);
   program.set("material_double_sided", m.double_sided ? 1 : 0);
-  bind_use(program, 0, m.base_color, true, "material_base_color_texcoord", "material_base_color_transform");
-  bind_use(program, 1, m.metallic, false, "material_metallic_texcoord", "material_metallic_transform");
-  bind_use(program, 2, m.emissive, true, "material_emissive_texcoord", "material_emissive_transform");
+  bind_use(program, MATERIAL_BASE_COLOR_UNIT, m.base_color, true, "material_base_color_texcoord",
+           "material_base_color_transform");
+  bind_use(program, MATERIAL_METALLIC_UNIT, m.metallic, false, "material_metallic_texcoord",
+           "material_metallic_transform");
+  bind_use(program, MATERIAL_EMISSIVE_UNIT, m.emissive, true, "material_emissive_texcoord",
+           "material_emissive_transform");
 }
 
 void SceneBuffers::draw(const Program& program) const {

@@ -11,7 +11,6 @@ namespace {
 
 using shared::Side;
 
-constexpr float kSimilarNormalCosine = 0.70710678f;  // within 45 degrees
 // The slicing passes round vertices to half a step, which moves a surface along the axis that its normal is nearest to
 // by 3/2 steps at most. Nearer to the surface than that, a cell's centre may lie on it or behind it.
 constexpr float kRounded = 2.0f / float(SLICE_STEPS);  // cells
@@ -32,7 +31,7 @@ bool meets(const EmbreeScene& embree, const Side& side, float depth_from_centre,
   const glm::vec3 a = mesh.positions[t.x];
   const glm::vec3 across = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
   const float facing = std::abs(glm::dot(across, side.normal));
-  if (!(facing >= kSimilarNormalCosine * glm::length(across))) return false;
+  if (!(facing >= SIMILAR_NORMAL_COSINE * glm::length(across))) return false;
   start.position = origin + along * hit.distance;
   start.origin = embree.leaving_point(start.position, along, hit.distance);
   start.from = hit.index();
@@ -56,7 +55,7 @@ glm::vec3 middle_of(const VoxelGrid& voxels, const Side& side, glm::ivec3 cell) 
   for (int face = 0; face < 6; ++face) {
     if (!shared::has_side(cell_sides, face)) continue;
     const Side& other = voxels.sides()[shared::side_index(cell_sides, face)];
-    if (glm::dot(other.normal, side.normal) >= kSimilarNormalCosine) continue;
+    if (glm::dot(other.normal, side.normal) >= SIMILAR_NORMAL_COSINE) continue;
     (shared::face_sign(face) < 0 ? low : high)[shared::face_axis(face)] = other.depth;
   }
   glm::vec3 middle = glm::vec3(cell) + 0.5f;

@@ -5,7 +5,6 @@
 
 #include "core/error.h"
 #include "core/gl/raster_state.h"
-#include "shaders/screen/base/gbuffer.shared.h"
 
 namespace volgi::screen {
 
@@ -25,7 +24,7 @@ void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> la
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
   gbuffer.bind();
-  for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(GBUFFER_UNITS + i));
+  for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(COMPOSE_LAYERS_UNIT + i));
   program_.use();
   program_.set("layer_count", int(layers.size()));
   gl::draw_fullscreen_triangle();

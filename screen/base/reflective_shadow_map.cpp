@@ -68,11 +68,11 @@ void ReflectiveShadowMap::draw_layer(const gl::SceneBuffers& buffers, const Map&
 void ReflectiveShadowMap::bind(int light) const {
   assert(light >= 0 && light < light_count());
   const Map& map = maps_[size_t(light)];
-  light_buffer_.bind_storage(1);
-  layer_buffer_.bind_storage(2);
-  map.depth.bind(12);
-  map.normal.bind(13);
-  map.albedo.bind(14);
+  light_buffer_.bind_storage(RSM_LIGHTS_SLOT);
+  layer_buffer_.bind_storage(RSM_LAYERS_SLOT);
+  map.depth.bind(RSM_DEPTH_UNIT);
+  map.normal.bind(RSM_NORMAL_UNIT);
+  map.albedo.bind(RSM_ALBEDO_UNIT);
 }
 
 size_t ReflectiveShadowMap::bytes() const {

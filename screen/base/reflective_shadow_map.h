@@ -37,7 +37,7 @@ class ReflectiveShadowMap {
   int light_count() const { return int(lights_.size()); }
   int layer_count(int light) const { return lights_[size_t(light)].layer_count; }
   int resolution(int light) const { return lights_[size_t(light)].resolution; }
-  /// Storage bindings 1 and 2 for the data of all lights, texture units 12 to 14 for the textures of `light`.
+  /// The data of all lights, and the textures of `light` (shaders/shared/reflective_shadow_map.shared.h).
   void bind(int light) const;
   size_t bytes() const;  // GPU memory
 

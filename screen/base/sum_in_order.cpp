@@ -16,7 +16,7 @@ void SumInOrder::set(const char* name, int value) const {
 }
 
 void SumInOrder::run() const {
-  part_sums_.bind_storage(8);
+  part_sums_.bind_storage(PART_SUMS_SLOT);
   for (const gl::Program* program : {&parts_, &all_}) {
     program->use();
     gl::dispatch({SUM_PARTS, 1, 1}, {1, 1, 1});

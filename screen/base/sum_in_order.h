@@ -9,7 +9,7 @@
 namespace volgi::screen {
 
 /// Sums of floats from the first on, in an order of additions that no GPU changes (screen/base/sum_in_order.glsl): 64
-/// parts beside each other, each in its order. Whole numbers: gl::Scan. Storage binding 8.
+/// parts beside each other, each in its order. Whole numbers: gl::Scan.
 class SumInOrder {
  public:
   /// @param file  includes screen/base/sum_in_order.glsl.

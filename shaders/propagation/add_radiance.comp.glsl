@@ -2,15 +2,16 @@
 // Adds the lobes that are in the cells now to the cells' radiance: summed over passes they are all the light that went
 // through a cell (sh.shared.h, radiance_from_lobe).
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
 #include "propagation/lobes.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler3D lobes;
-layout(binding = 0, rgba32f) uniform restrict image3D radiance_sh;  // coefficients stacked in z
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = LOBES_UNIT) uniform sampler3D lobes;
+layout(binding = LOBES_RADIANCE_IMAGE, rgba32f) uniform restrict image3D radiance_sh;  // coefficients stacked in z
 uniform bool stored_rescaled;  // `conservative`: what a lobe carries is the sum of what its faces pass
-uniform float odd_sign;  // -1: of light that comes from where it went to
+uniform float odd_sign;        // -1: of light that comes from where it went to
 
 void add(ivec3 c, int coefficient, float red, float green, float blue) {
   ivec3 texel = c + ivec3(0, 0, coefficient * grid.cells.z);

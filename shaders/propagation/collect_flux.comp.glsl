@@ -1,12 +1,14 @@
 #version 450 core
 // Adds one source's fixed-point deposits to the flux per side and clears them for the next source.
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
 #include "propagation/fixed_flux.glsl"
+#include "shared/group_sizes.shared.h"
+#include "voxel/side_count.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 9) buffer Source { vec4 source_flux[]; };
-layout(std430, binding = 11) buffer Lost { vec4 lost_flux; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = SOURCE_SLOT) buffer Source { vec4 source_flux[]; };
+layout(std430, binding = LOST_SLOT) buffer Lost { vec4 lost_flux; };
 
 void main() {
   uint i = global_index();

@@ -1,14 +1,15 @@
 #version 450 core
 // Adds what the four octants that reach a side have brought to its face (sweep.comp.glsl) to what it has received.
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/side_texel.glsl"
+#include "shared/group_sizes.shared.h"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) buffer Received { vec4 received[]; };
-layout(binding = 0) uniform sampler2D arrived;
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = RECEIVED_SLOT) buffer Received { vec4 received[]; };
+layout(binding = ARRIVED_UNIT) uniform sampler2D arrived;
 uniform int lanes;  // of an octant: three bands of as many quads of directions
 
 float power_of_band(int side, int band) {

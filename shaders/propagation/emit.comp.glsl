@@ -1,15 +1,15 @@
 #version 450 core
 // Starts an order: every side sends its power into the cell that sees it; empty cells start dark.
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/crossing.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 7) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(std430, binding = SENT_SLOT) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
 
 void main() {
   ivec3 c = ivec3(gl_GlobalInvocationID);

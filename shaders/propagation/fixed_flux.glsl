@@ -1,7 +1,9 @@
 // Sums of one source's deposits, as shares of the source's power in units of 2^-60: what all deposits round away is
 // below 2^-33 of it even for 2^28 of them, and 16 times the power fits.
-layout(std430, binding = 12) buffer FluxFixed { uvec2 flux_fixed[]; };  // 3 per side: low and high word
-layout(std430, binding = 13) buffer FluxLost { uvec2 flux_lost[3]; };   // what found no side
+#include "propagation/slots.shared.h"
+
+layout(std430, binding = FLUX_FIXED_SLOT) buffer FluxFixed { uvec2 flux_fixed[]; };  // 3 per side: low and high word
+layout(std430, binding = FLUX_LOST_SLOT) buffer FluxLost { uvec2 flux_lost[3]; };    // what found no side
 uniform float source_power;  // [W], per band no more is deposited
 
 const float HIGH_WORDS = 268435456.0;  // 2^28 in a share of 1

@@ -1,7 +1,9 @@
 #version 450 core
 // Deposits the light that pieces of emissive surfaces send (voxel/emitter_pieces.h).
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
 #include "propagation/deposit.glsl"
+#include "shared/group_sizes.shared.h"
 
 struct Piece {
   vec4 position;
@@ -9,8 +11,8 @@ struct Piece {
   vec4 flux;
 };
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 14) readonly buffer Pieces { Piece pieces[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = PIECES_SLOT) readonly buffer Pieces { Piece pieces[]; };
 uniform int piece_count;
 
 void main() {

@@ -1,5 +1,7 @@
 // Which of the 27 cells around a cell can be reached from it without crossing a face that stops everything, in at most
-// three steps: light on them lies on the same side of the surfaces. Needs grid and cell_sides.
+// three steps: light on them lies on the same side of the surfaces.
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
 
 // 3 x 3 x 3 bits, bit (dx+1) + 3 (dy+1) + 9 (dz+1).
 uint reachable_cells(ivec3 centre) {

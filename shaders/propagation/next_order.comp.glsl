@@ -1,16 +1,18 @@
 #version 450 core
 // Between two orders: what sides have received is added to the total, and what they return (plus the sources that start
 // with this order) becomes what they send. docs/conventions.md#volume-quantities.
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
-#include "shared/side.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) buffer Received { vec4 received[]; };
-layout(std430, binding = 7) writeonly buffer Sent { vec4 sent[]; };
-layout(std430, binding = 8) buffer Total { vec4 total[]; };              // direct or indirect, as the order is
-layout(std430, binding = 9) readonly buffer Source { vec4 source_flux[]; };  // flux that lit surfaces send [W]
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = RECEIVED_SLOT) buffer Received { vec4 received[]; };
+layout(std430, binding = SENT_SLOT) writeonly buffer Sent { vec4 sent[]; };
+layout(std430, binding = TOTAL_SLOT) buffer Total { vec4 total[]; };  // direct or indirect, as the order is
+// Flux that lit surfaces send [W].
+layout(std430, binding = SOURCE_SLOT) readonly buffer Source { vec4 source_flux[]; };
 uniform bool add_source;
 uniform bool already_reflected;  // hits went on at once (propagate, reflect_hits)
 

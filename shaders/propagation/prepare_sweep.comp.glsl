@@ -1,19 +1,19 @@
 #version 450 core
 // Sides as the sweep reads them (sweep.comp.glsl), through textures and in one read each: for every cell its first side
 // and which faces have one, for every side what it sends and the share of light that its face lets through.
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/side_texel.glsl"
+#include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0, r32ui) uniform restrict writeonly uimage3D cell_word;    // (first side << 6) | faces
-layout(binding = 1, rgba32f) uniform restrict writeonly image2D side_light;  // rgb [W], a: 1 - tau
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 7) readonly buffer Sent { vec4 sent[]; };  // power per side [W]
+layout(local_size_x = LINEAR_GROUP) in;
+layout(binding = CELL_WORD_IMAGE, r32ui) uniform restrict writeonly uimage3D cell_word;     // (first side << 6) | faces
+layout(binding = SIDE_LIGHT_IMAGE, rgba32f) uniform restrict writeonly image2D side_light;  // rgb [W], a: 1 - tau
+layout(std430, binding = SENT_SLOT) readonly buffer Sent { vec4 sent[]; };                  // power per side [W]
 
 void main() {
   int i = int(global_index());

@@ -4,17 +4,17 @@
 // tau for the side there. Gaitatzes 2010 section 4.2, eq. 8 gathers alike; we depart: the exact flux through
 // the face for a cone, power kept, sides for axis mirrors.
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/crossing.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler3D lobes;
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 6) restrict buffer Received { vec4 received[]; };  // power per side [W]
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = LOBES_UNIT) uniform sampler3D lobes;
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(std430, binding = RECEIVED_SLOT) restrict buffer Received { vec4 received[]; };  // power per side [W]
 uniform bool reflect_hits;  // send what sides receive on at once: all orders in flight together
 
 void gather(ivec3 c, int face, float share, inout Lobes sum) {

@@ -3,17 +3,18 @@
 // 90-degree cone towards this cell, which goes on as that cone's lobe. In occupied cells the occupied share is mirrored on
 // the axis nearest to the mean normal, accumulated, and sent on times the albedo. Our reading: sh.shared.h, turned_back.
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
 #include "propagation/pulse_lobes.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler3D lobes;
-layout(binding = 1) uniform sampler3D accumulated;
-layout(binding = 2) uniform sampler3D normal_occupancy;  // mean normal, occupancy
-layout(binding = 3) uniform sampler3D cell_albedo;
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(binding = 1, rgba32f) uniform restrict writeonly image3D next_accumulated;
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = LOBES_UNIT) uniform sampler3D lobes;
+layout(binding = ACCUMULATED_UNIT) uniform sampler3D accumulated;
+layout(binding = NORMAL_OCCUPANCY_UNIT) uniform sampler3D normal_occupancy;  // mean normal, occupancy
+layout(binding = CELL_ALBEDO_UNIT) uniform sampler3D cell_albedo;
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(binding = NEXT_ACCUMULATED_IMAGE, rgba32f) uniform restrict writeonly image3D next_accumulated;
 uniform bool constant_albedo;  // 0.5, as the paper has it after the first bounce (the injected one)
 
 void gather(ivec3 c, int face, vec4 surface, vec3 albedo, inout vec3 sent[6], inout vec3 bounced[6]) {

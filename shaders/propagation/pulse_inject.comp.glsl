@@ -2,16 +2,16 @@
 // Starts a pulse of the papers' schemes: the flux of every side as a cosine lobe about its normal, in the cell that sees
 // it. Gaitatzes 2010, section 4: virtual point lights are "hemispherical lights with a cosine falloff".
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/pulse_lobes.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 7) readonly buffer SideFlux { vec4 side_flux[]; };  // A B0 [W]
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(std430, binding = SIDE_FLUX_SLOT) readonly buffer SideFlux { vec4 side_flux[]; };  // A B0 [W]
 
 void main() {
   ivec3 c = ivec3(gl_GlobalInvocationID);

@@ -3,18 +3,18 @@
 // every occupied cell a light of the area of a cell's face, with a cosine falloff about the mean normal. Its radiosity is
 // the largest that surfaces in the cell emit, and the largest that its sides reflect. Our reading: docs/theory.md#papers.
 // Set by the program: ORDER = 2
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
 #include "propagation/pulse_lobes.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 2) uniform sampler3D normal_occupancy;  // mean normal, occupancy
-layout(binding = 3) uniform sampler3D emission;          // largest radiosity pi L_e
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 7) readonly buffer SideFlux { vec4 side_flux[]; };  // A B0 [W]
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = NORMAL_OCCUPANCY_UNIT) uniform sampler3D normal_occupancy;  // mean normal, occupancy
+layout(binding = CELL_EMISSION_UNIT) uniform sampler3D emission;             // largest radiosity pi L_e
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(std430, binding = SIDE_FLUX_SLOT) readonly buffer SideFlux { vec4 side_flux[]; };  // A B0 [W]
 
 vec3 radiosity_of_side(ivec3 cell, int face) {
   uvec2 own = cell_sides[cell_index(grid, cell)];

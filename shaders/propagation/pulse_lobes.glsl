@@ -1,5 +1,6 @@
 // Lobes of revolution, for the papers' schemes (sh.shared.h; docs/theory.md#papers).
 #include "propagation/lobes.glsl"
+#include "shared/grid.shared.h"
 
 // Of power 1 about the unit vector n, with the zonal coefficients 1, zonal_1, zonal_2.
 Lobe lobe_about(vec3 n, float zonal_1, float zonal_2) {

@@ -3,16 +3,17 @@
 // neighbour to the five faces of this cell that do not touch it, the lobe's intensity there times the solid angle that the
 // face shows, sent on as a clamped cosine lobe about the way out. No occlusion, no reflection. All passes accumulate.
 // Set by the program: ORDER = 2
+#include "propagation/slots.shared.h"
 #include "shared/constants.glsl"
-#include "shared/grid.shared.h"
 #include "propagation/pulse_lobes.glsl"
+#include "shared/group_sizes.shared.h"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler3D lobes;
-layout(binding = 1) uniform sampler3D accumulated;
-layout(binding = 0, rgba32f) uniform restrict writeonly image3D next_lobes;
-layout(binding = 1, rgba32f) uniform restrict writeonly image3D next_accumulated;
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(binding = LOBES_UNIT) uniform sampler3D lobes;
+layout(binding = ACCUMULATED_UNIT) uniform sampler3D accumulated;
+layout(binding = NEXT_LOBES_IMAGE, rgba32f) uniform restrict writeonly image3D next_lobes;
+layout(binding = NEXT_ACCUMULATED_IMAGE, rgba32f) uniform restrict writeonly image3D next_accumulated;
 
 const float FOUR_PI = 4.0 * PI;
 

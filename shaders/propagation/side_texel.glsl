@@ -1,11 +1,9 @@
 // Values per side kept in 2D textures.
-const int SIDE_ROW_BITS = 10;  // SIDES_PER_ROW of transport_ordinates_gl.cpp
+#include "propagation/sweep.shared.h"
 
 ivec2 side_texel(int side) { return ivec2(side & ((1 << SIDE_ROW_BITS) - 1), side >> SIDE_ROW_BITS); }
 
 // What reaches a side in parts: four entries, one for each octant that can reach it, of `lanes` parts each.
-const int ARRIVED_ROW_BITS = 8;  // ARRIVED_A_ROW of transport_ordinates_gl.cpp
-
 ivec2 arrived_texel(int side, int entry, int lane, int lanes) {
   return ivec2(((side & ((1 << ARRIVED_ROW_BITS) - 1)) * 4 + entry) * lanes + lane, side >> ARRIVED_ROW_BITS);
 }

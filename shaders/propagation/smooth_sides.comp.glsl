@@ -2,23 +2,19 @@
 // Single sides of tilted surfaces carry staircase noise of tens of percent: the irradiance that pixels see is the
 // mean by side_weight() over the sides with like normals in the 3^3 cells around, clamped at zero afterwards
 // (docs/conventions.md#volume-quantities).
-#include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 10) readonly buffer Direct { vec4 direct[]; };
-layout(std430, binding = 11) readonly buffer Indirect { vec4 indirect[]; };
-layout(std430, binding = 6) writeonly buffer DirectIrradiance { vec4 direct_irradiance[]; };    // [W m^-2]
-layout(std430, binding = 7) writeonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
-
 #include "propagation/neighbourhood.glsl"
+#include "propagation/slots.shared.h"
+#include "shared/global_index.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = WEIGHTED_DIRECT_SLOT) readonly buffer Direct { vec4 direct[]; };
+layout(std430, binding = WEIGHTED_INDIRECT_SLOT) readonly buffer Indirect { vec4 indirect[]; };
+// Irradiance [W m^-2].
+layout(std430, binding = DIRECT_IRRADIANCE_SLOT) writeonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
+layout(std430, binding = INDIRECT_IRRADIANCE_SLOT) writeonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
 
 void main() {
   uint i = global_index();

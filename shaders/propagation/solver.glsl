@@ -1,18 +1,18 @@
 // All bounces at once: P = K(e + fP), by conjugate gradients or by P <- K(e + fP); see propagation/bounces_cpu.h for the
 // equations. Kernels run as 64 groups of 256 threads that stride over the sides, so that sums have a fixed order.
+#include "propagation/slots.shared.h"
 #include "shared/bounce_state.shared.h"
-#include "shared/side.shared.h"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
 layout(local_size_x = 256) in;
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) buffer Received { vec4 received[]; };  // y = K d, or P of the order
-layout(std430, binding = 7) buffer Sent { vec4 sent[]; };          // d, or e + fP
-layout(std430, binding = 8) buffer Total { vec4 total[]; };        // P
-layout(std430, binding = 9) buffer Source { vec4 source[]; };      // e [W]
-layout(std430, binding = 10) buffer Partials { vec4 partials[]; };  // three sums for each of the 64 groups
-layout(std430, binding = 11) readonly buffer State { BounceState state; };
-layout(std430, binding = 12) buffer Residual { vec4 residual[]; };  // q
+layout(std430, binding = RECEIVED_SLOT) buffer Received { vec4 received[]; };  // y = K d, or P of the order
+layout(std430, binding = SENT_SLOT) buffer Sent { vec4 sent[]; };              // d, or e + fP
+layout(std430, binding = TOTAL_SLOT) buffer Total { vec4 total[]; };           // P
+layout(std430, binding = SOURCE_SLOT) buffer Source { vec4 source[]; };        // e [W]
+layout(std430, binding = PARTIALS_SLOT) buffer Partials { vec4 partials[]; };  // three sums for each of the 64 groups
+layout(std430, binding = STATE_SLOT) readonly buffer State { BounceState state; };
+layout(std430, binding = RESIDUAL_SLOT) buffer Residual { vec4 residual[]; };  // q
 
 const uint STRIDE = BOUNCE_PARTIALS * 256u;
 

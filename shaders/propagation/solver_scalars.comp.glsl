@@ -1,10 +1,11 @@
 #version 450 core
 // Adds the partial sums of 64 groups, and makes of them what the next kernel and the host look at.
+#include "propagation/slots.shared.h"
 #include "shared/bounce_state.shared.h"
 
 layout(local_size_x = BOUNCE_PARTIALS) in;
-layout(std430, binding = 10) readonly buffer Partials { vec4 partials[]; };
-layout(std430, binding = 11) buffer State { BounceState state; };
+layout(std430, binding = PARTIALS_SLOT) readonly buffer Partials { vec4 partials[]; };
+layout(std430, binding = STATE_SLOT) buffer State { BounceState state; };
 uniform int sums;  // BOUNCE_SUMS_*
 
 shared vec4 running[3][BOUNCE_PARTIALS];

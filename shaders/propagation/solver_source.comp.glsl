@@ -1,9 +1,12 @@
 #version 450 core
 // What sides send before bounces: punctual light, and what they return of the first arrival of emission.
+#include "propagation/slots.shared.h"
 #include "propagation/solver.glsl"
 
-layout(std430, binding = 13) readonly buffer Direct { vec4 direct[]; };        // first arrival of emission [W]
-layout(std430, binding = 14) readonly buffer Punctual { vec4 punctual_flux[]; };  // flux that lit surfaces send [W]
+// First arrival of emission [W].
+layout(std430, binding = FIRST_ARRIVAL_SLOT) readonly buffer Direct { vec4 direct[]; };
+// Flux that lit surfaces send [W].
+layout(std430, binding = SOURCE_PUNCTUAL_SLOT) readonly buffer Punctual { vec4 punctual_flux[]; };
 
 void main() {
   vec3 sum = vec3(0.0);

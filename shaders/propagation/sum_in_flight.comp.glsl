@@ -3,13 +3,14 @@
 // clamped face powers sum to the power that it carries; the first number of a pulse's lobe (papers' schemes) is its power.
 // Set by the program: ORDER = 2
 // Set by the program: PULSE = 0
-#include "shared/grid.shared.h"
 #include "propagation/crossing.glsl"
+#include "propagation/partial_sums.shared.h"
+#include "propagation/slots.shared.h"
+#include "voxel/grid_block.glsl"
 
 layout(local_size_x = 256) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 0) uniform sampler3D lobes;
-layout(std430, binding = 10) writeonly buffer Partials { vec4 partials[]; };
+layout(binding = LOBES_UNIT) uniform sampler3D lobes;
+layout(std430, binding = PARTIALS_SLOT) writeonly buffer Partials { vec4 partials[]; };
 
 shared vec4 running[256];
 
@@ -17,7 +18,7 @@ void main() {
   uint lane = gl_LocalInvocationID.x;
   int cells = grid.cells.x * grid.cells.y * grid.cells.z;
   vec4 sum = vec4(0.0);
-  for (int i = int(gl_GlobalInvocationID.x); i < cells; i += 64 * 256) {
+  for (int i = int(gl_GlobalInvocationID.x); i < cells; i += PARTIAL_SUMS * 256) {
     Lobes own = load_lobes(lobes, cell_coord(grid, i), grid.cells.z);
 #if PULSE
     sum.rgb += lobe_powers(own);

@@ -9,29 +9,30 @@
 // in registers, what passes between tiles lies in one plane of the grid an axis, read and written in place.
 // Set by the program: QUADS = 4
 // Set by the program: CHARACTERISTIC = 1
-#include "shared/grid.shared.h"
 #include "propagation/side_texel.glsl"
+#include "propagation/slots.shared.h"
+#include "propagation/sweep.shared.h"
+#include "voxel/grid_block.glsl"
 
 layout(local_size_x = 3 * QUADS, local_size_y = 8) in;  // lane: band and four directions; octant
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 // Of four directions; a is an upwind, b a downwind face's axis.
 struct QuadShares {
   vec4 emitted[3];  // of what a side on face a sends (OrdinateSet::emitted_share)
   // Step: of a cell's power through face b. Characteristic (SC1): of what comes in by face a through face b, 3 a + b.
   vec4 downwind[CHARACTERISTIC != 0 ? 9 : 3];
 };
-layout(std430, binding = 6) readonly buffer Shares { QuadShares shares[QUADS]; };
-layout(binding = 1) uniform usampler3D cell_word;   // (first side << 6) | faces (prepare_sweep)
-layout(binding = 2) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
-layout(binding = 3) uniform usampler2D block_list;  // of all diagonals: x | y << 8 | z << 16
+layout(std430, binding = SHARES_SLOT) readonly buffer Shares { QuadShares shares[QUADS]; };
+layout(binding = CELL_WORD_UNIT) uniform usampler3D cell_word;    // (first side << 6) | faces (prepare_sweep)
+layout(binding = SIDE_LIGHT_UNIT) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
+layout(binding = BLOCK_LIST_UNIT) uniform usampler2D block_list;  // of all diagonals: x | y << 8 | z << 16
 // What leaves cells through downwind faces [W], by octant and lane, then by the face's place: (y,z), (x,z), (x,y).
-layout(binding = 0, rgba32f) uniform restrict image3D x_faces;
-layout(binding = 1, rgba32f) uniform restrict image3D y_faces;
-layout(binding = 2, rgba32f) uniform restrict image3D z_faces;
-layout(binding = 3, r32f) uniform restrict writeonly image2D arrived;  // side_texel.glsl
-uniform int first_block;                                               // of the diagonal, in block_list
+layout(binding = FACES_IMAGE, rgba32f) uniform restrict image3D x_faces;
+layout(binding = FACES_IMAGE + 1, rgba32f) uniform restrict image3D y_faces;
+layout(binding = FACES_IMAGE + 2, rgba32f) uniform restrict image3D z_faces;
+layout(binding = ARRIVED_IMAGE, r32f) uniform restrict writeonly image2D arrived;  // side_texel.glsl
+uniform int first_block;                                                           // of the diagonal, in block_list
 
-const int BLOCK = 8;
+const int BLOCK = SWEEP_BLOCK;
 const int TILE = 4;
 
 // The invocation's own.
@@ -131,7 +132,7 @@ void carry_tile(ivec3 first, int end_z) {
 
 void main() {
   int n = first_block + int(gl_WorkGroupID.x);
-  uint block = texelFetch(block_list, ivec2(n & 1023, n >> 10), 0).x;
+  uint block = texelFetch(block_list, ivec2(n & ((1 << DIAGONAL_ROW_BITS) - 1), n >> DIAGONAL_ROW_BITS), 0).x;
   ivec3 first = BLOCK * ivec3(block & 255u, (block >> 8) & 255u, block >> 16);
   ivec3 end = min(first + BLOCK, grid.cells);
   for (int y = first.y; y < end.y; y += TILE) {

@@ -8,25 +8,28 @@
 // Step keeps a cell's power of each direction; characteristic (SC1) what leaves through each of its three downwind faces.
 // Set by the program: TEXELS = 3
 // Set by the program: CHARACTERISTIC = 1
-#include "shared/grid.shared.h"
 #include "propagation/side_texel.glsl"
+#include "propagation/slots.shared.h"
+#include "propagation/sweep.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+layout(local_size_x = LINEAR_GROUP) in;
 // By texel; a is an upwind, b a downwind face's axis.
-layout(std140, binding = 1) uniform SharesBlock {
+layout(std140, binding = SHARES_BLOCK) uniform SharesBlock {
   vec4 emitted_share[3 * TEXELS];  // of what a side on face a sends (OrdinateSet::emitted_share): 3 k + a
   // Step: of a cell's power through face b: 3 k + b. Characteristic: of what came in through face a: 9 k + 3 a + b.
   vec4 downwind_share[(CHARACTERISTIC != 0 ? 9 : 3) * TEXELS];
   vec4 radiance_weight[3 * TEXELS];  // radiance_per_watt of what comes in through face a: 3 k + a
   vec4 direction[3 * TEXELS];        // its component on axis a: 3 k + a
 };
-layout(binding = 0) uniform sampler2DArray before_plane;  // column (i,j); layers by texel, downwind face
-layout(binding = 1) uniform usampler3D cell_word;         // (first side << 6) | faces (prepare_sweep)
-layout(binding = 2) uniform sampler2D side_light;         // rgb sent [W], a: 1 - tau
-layout(binding = 3) uniform usampler2D column_map;        // of all diagonals' cells: i + (j << 16)
-layout(binding = 0, rgba32f) uniform restrict writeonly image2DArray this_plane;
-layout(binding = 1, rgba32f) uniform restrict image3D radiance_sh;  // four coefficients stacked in z
+// Column (i,j); layers by texel, downwind face.
+layout(binding = BEFORE_PLANE_UNIT) uniform sampler2DArray before_plane;
+layout(binding = CELL_WORD_UNIT) uniform usampler3D cell_word;    // (first side << 6) | faces (prepare_sweep)
+layout(binding = SIDE_LIGHT_UNIT) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
+layout(binding = COLUMN_MAP_UNIT) uniform usampler2D column_map;  // of all diagonals' cells: i + (j << 16)
+layout(binding = THIS_PLANE_IMAGE, rgba32f) uniform restrict writeonly image2DArray this_plane;
+layout(binding = SWEEP_RADIANCE_IMAGE, rgba32f) uniform restrict image3D radiance_sh;  // four coefficients stacked in z
 uniform int diagonal;
 uniform int first_cell;  // of the diagonal, in column_map
 uniform int cell_count;
@@ -153,7 +156,7 @@ void main() {
   int n = int(gl_GlobalInvocationID.x);
   if (n >= cell_count) return;
   n += first_cell;
-  int column = int(texelFetch(column_map, ivec2(n & 1023, n >> 10), 0).x);
+  int column = int(texelFetch(column_map, ivec2(n & ((1 << DIAGONAL_ROW_BITS) - 1), n >> DIAGONAL_ROW_BITS), 0).x);
   ivec3 flow = ivec3(column & 0xffff, column >> 16, 0);
   flow.z = diagonal - flow.x - flow.y;
   ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);

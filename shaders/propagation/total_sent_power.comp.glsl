@@ -1,16 +1,14 @@
 #version 450 core
 // Power per side sent in all orders: what the radiance in free space follows from.
+#include "propagation/answer.glsl"
+#include "propagation/slots.shared.h"
 #include "shared/global_index.shared.h"
-#include "shared/side.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) readonly buffer TotalDirect { vec4 total_direct[]; };      // first arrival of emission
-layout(std430, binding = 7) readonly buffer TotalIndirect { vec4 total_indirect[]; };  // everything after
-layout(std430, binding = 8) readonly buffer EmittedFlux { vec4 emitted_flux[]; };
-layout(std430, binding = 9) readonly buffer PunctualFlux { vec4 punctual_flux[]; };
-layout(std430, binding = 10) writeonly buffer Sent { vec4 sent[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = TOTAL_SENT_SLOT) writeonly buffer Sent { vec4 sent[]; };
 
 void main() {
   uint i = global_index();

@@ -2,6 +2,7 @@
 // A shader without screen derivatives (compute) defines MATERIAL_LOD to the mipmap level that it wants.
 #ifndef VOLGI_MATERIAL_GLSL
 #define VOLGI_MATERIAL_GLSL
+#include "shared/material.shared.h"
 
 #define MATERIAL_OPAQUE 0
 #define MATERIAL_MASK 1
@@ -22,9 +23,10 @@ uniform mat3 material_base_color_transform;
 uniform mat3 material_metallic_transform;
 uniform mat3 material_emissive_transform;
 
-layout(binding = 0) uniform sampler2D material_base_color_texture;  // linear light (core/mipmaps.h)
-layout(binding = 1) uniform sampler2D material_metallic_texture;
-layout(binding = 2) uniform sampler2D material_emissive_texture;
+// Linear light (core/mipmaps.h).
+layout(binding = MATERIAL_BASE_COLOR_UNIT) uniform sampler2D material_base_color_texture;
+layout(binding = MATERIAL_METALLIC_UNIT) uniform sampler2D material_metallic_texture;
+layout(binding = MATERIAL_EMISSIVE_UNIT) uniform sampler2D material_emissive_texture;
 
 vec4 material_fetch(sampler2D image, int texcoord, mat3 transform, vec2 uv0, vec2 uv1) {
   if (texcoord < 0) return vec4(1.0);

@@ -5,11 +5,11 @@
 #include "shared/octahedral.glsl"
 #include "shared/reflective_shadow_map.shared.h"
 
-layout(std430, binding = 1) readonly buffer RsmLights { ReflectiveShadowLight rsm_lights[]; };
-layout(std430, binding = 2) readonly buffer RsmLayers { ReflectiveShadowLayer rsm_layers[]; };
-layout(binding = 12) uniform sampler2DArray rsm_depth;
-layout(binding = 13) uniform sampler2DArray rsm_normal;  // geometric, octahedral, on the light's side
-layout(binding = 14) uniform sampler2DArray rsm_albedo;
+layout(std430, binding = RSM_LIGHTS_SLOT) readonly buffer RsmLights { ReflectiveShadowLight rsm_lights[]; };
+layout(std430, binding = RSM_LAYERS_SLOT) readonly buffer RsmLayers { ReflectiveShadowLayer rsm_layers[]; };
+layout(binding = RSM_DEPTH_UNIT) uniform sampler2DArray rsm_depth;
+layout(binding = RSM_NORMAL_UNIT) uniform sampler2DArray rsm_normal;  // geometric, octahedral, on the light's side
+layout(binding = RSM_ALBEDO_UNIT) uniform sampler2DArray rsm_albedo;
 
 // What the light sees through one texel: position on the surface, geometric normal on the light's side, power that
 // arrives there [W] (0 outside a spot's cone), albedo.

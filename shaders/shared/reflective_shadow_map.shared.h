@@ -5,6 +5,13 @@
 #include "shared/light.shared.h"
 SHARED_BEGIN
 
+// ReflectiveShadowMap::bind().
+#define RSM_LIGHTS_SLOT 1
+#define RSM_LAYERS_SLOT 2
+#define RSM_DEPTH_UNIT 12
+#define RSM_NORMAL_UNIT 13
+#define RSM_ALBEDO_UNIT 14
+
 // Texels around a layer that lie outside the light's cone, cube face or bounds, so that the four nearest texels of
 // every lit point exist.
 #define RSM_MARGIN_TEXELS 2

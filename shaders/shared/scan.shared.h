@@ -4,4 +4,7 @@
 
 #define SCAN_BLOCK 256  // numbers that one group sums
 
+#define SCAN_NUMBERS_SLOT 0
+#define SCAN_BLOCK_SUMS_SLOT 1
+
 #endif

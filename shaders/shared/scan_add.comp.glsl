@@ -4,8 +4,8 @@
 #include "shared/global_index.shared.h"
 
 layout(local_size_x = SCAN_BLOCK) in;
-layout(std430, binding = 0) buffer Numbers { uint numbers[]; };
-layout(std430, binding = 1) readonly buffer BlockSums { uint block_sums[]; };
+layout(std430, binding = SCAN_NUMBERS_SLOT) buffer Numbers { uint numbers[]; };
+layout(std430, binding = SCAN_BLOCK_SUMS_SLOT) readonly buffer BlockSums { uint block_sums[]; };
 uniform uint count;
 
 void main() {

@@ -42,6 +42,9 @@ SHARED_FUNCTION uint side_index(uvec2 cell_sides, int face) {
 #define DEPOSIT_REACH 0.49f
 #define DEPOSIT_FIRST 8.0f  // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
 
+// Sides whose normals are within 45 degrees of each other may show one surface.
+#define SIMILAR_NORMAL_COSINE 0.70710678f
+
 SHARED_FUNCTION float staircase_factor(vec3 normal) { return abs(normal.x) + abs(normal.y) + abs(normal.z); }
 
 // A tilted surface shows the grid a staircase m of s times its area A, which also intercepts (s-1)/s of what it sends;

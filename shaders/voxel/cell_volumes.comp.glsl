@@ -1,13 +1,13 @@
 #version 450 core
 // Turns the sums of each cell into what is kept of it.
-#include "shared/grid.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "voxel/cell_sums.glsl"
+#include "voxel/grid_block.glsl"
 
-layout(local_size_x = 8, local_size_y = 8, local_size_z = 4) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(rgba16f, binding = 0) writeonly uniform image3D normal_occupancy;
-layout(rgba16f, binding = 1) writeonly uniform image3D albedo;
-layout(rgba32f, binding = 2) writeonly uniform image3D emission;
+layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
+layout(rgba16f, binding = NORMAL_OCCUPANCY_IMAGE) writeonly uniform image3D normal_occupancy;
+layout(rgba16f, binding = CELL_ALBEDO_IMAGE) writeonly uniform image3D albedo;
+layout(rgba32f, binding = CELL_EMISSION_IMAGE) writeonly uniform image3D emission;
 
 void main() {
   ivec3 c = ivec3(gl_GlobalInvocationID);

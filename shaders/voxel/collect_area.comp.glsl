@@ -2,17 +2,17 @@
 // Gives the sides of one axis the areas that side_area has counted, and their surfaces, too, which later frames that slice
 // along other axes take them from.
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/side.shared.h"
+#include "voxel/grid_block.glsl"
+#include "voxel/side_count.glsl"
 #include "voxel/surfaces.glsl"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 0) readonly buffer AreaFixed { uint area_fixed[]; };
-layout(std430, binding = 1) readonly buffer Entries { uint entries[]; };
-layout(std430, binding = 2) buffer Surfaces { Surface surfaces[]; };
-layout(std430, binding = 4) buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = AREA_FIXED_SLOT) readonly buffer AreaFixed { uint area_fixed[]; };
+layout(std430, binding = AREA_ENTRIES_SLOT) readonly buffer Entries { uint entries[]; };
+layout(std430, binding = AREA_SURFACES_SLOT) buffer Surfaces { Surface surfaces[]; };
+layout(std430, binding = SIDES_SLOT) buffer Sides { Side sides[]; };
 uniform int axis;
 
 void main() {

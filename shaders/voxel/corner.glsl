@@ -1,13 +1,11 @@
 // Vertex stage of every pass over the scene's surfaces: corners in steps of slice_vertex, the rest as it comes.
-#include "shared/grid.shared.h"
+#include "voxel/grid_block.glsl"
 
 layout(location = 0) in vec3 in_position;
 layout(location = 2) in vec2 in_uv0;
 layout(location = 3) in vec2 in_uv1;
 layout(location = 4) in vec4 in_color;
 layout(location = 5) in vec3 in_geometric_normal;
-
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
 
 flat out ivec3 c_vertex;  // slice_vertex
 out vec2 c_uv0;

@@ -5,12 +5,15 @@
 #include "shared/global_index.shared.h"
 #include "shared/grid.shared.h"
 #include "voxel/families.glsl"
+#include "voxel/groups.shared.h"
+#include "voxel/slots.shared.h"
 
-layout(local_size_x = 32) in;
-layout(std430, binding = 0) readonly buffer Blocked { uint at[]; } blocked[3];
-layout(std430, binding = 3) readonly buffer Haze { uint haze[]; };  // of this axis; empty without glass
-layout(std430, binding = 4) readonly buffer KeyLow { uint key_low[]; };  // of this axis
-layout(std430, binding = 5) writeonly buffer Coverage { float coverage[]; };
+layout(local_size_x = FACE_LANES) in;
+layout(std430, binding = COVERAGE_BLOCKED_SLOT) readonly buffer Blocked { uint at[]; } blocked[3];
+// Of this axis; empty without glass.
+layout(std430, binding = COVERAGE_HAZE_SLOT) readonly buffer Haze { uint haze[]; };
+layout(std430, binding = COVERAGE_KEY_LOW_SLOT) readonly buffer KeyLow { uint key_low[]; };  // of this axis
+layout(std430, binding = COVERAGE_SLOT) writeonly buffer Coverage { float coverage[]; };
 uniform int axis;
 uniform int has_haze;
 
@@ -53,7 +56,7 @@ uint reach(ivec3 cell) {
 }
 
 // Most faces are decided at once; the others of a group are collected and then shared out, so that no lane idles.
-const uint FACES = 256u;  // of a group
+const uint FACES = uint(VOXEL_GROUP);  // of a group
 shared uint partly[FACES];
 shared uint partly_count;
 

@@ -2,9 +2,7 @@
 // cells' centres. Node k of an axis lies at (2k+1) SLICE_STEPS/6; lines are numbered as the nodes that they run through.
 #ifndef VOLGI_FAMILIES_GLSL
 #define VOLGI_FAMILIES_GLSL
-#include "shared/grid.shared.h"
-
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
+#include "voxel/grid_block.glsl"
 
 const int NODE_STEPS = SLICE_STEPS / 3;  // 128: divided by shifts, which round down for negative numbers too
 const int NODE_SHIFT = 7;

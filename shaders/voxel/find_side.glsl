@@ -1,14 +1,7 @@
-// Which sides stand for a point of a surface. Needs grid, cell_sides and sides (declared here; storage 3 and 4).
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-
-#ifndef VOLGI_FAMILIES_GLSL  // which has it too
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-#endif
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-
-const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
+// Which sides stand for a point of a surface.
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/sides.glsl"
 
 // Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, as a floor
 // does under a carpet: by more than the two planes can part within the half diagonal of a face (0.71 cells) when they are

@@ -1,15 +1,15 @@
 #version 450 core
 // For every cell: which faces have sides, and the number of sides of the cells before it in its group (a scan).
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#define SCAN_GROUP 256u
+#include "voxel/grid_block.glsl"
+#include "voxel/groups.shared.h"
+#define SCAN_GROUP uint(VOXEL_GROUP)
 #include "shared/scan.glsl"
 
-layout(local_size_x = 256) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 0) readonly buffer Coverage { float at[]; } coverage[3];
-layout(std430, binding = 3) writeonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) buffer GroupTotals { uint group_totals[]; };
+layout(local_size_x = VOXEL_GROUP) in;
+layout(std430, binding = LIST_COVERAGE_SLOT) readonly buffer Coverage { float at[]; } coverage[3];
+layout(std430, binding = CELL_SIDES_SLOT) writeonly buffer CellSides { uvec2 cell_sides[]; };
+layout(std430, binding = GROUP_TOTALS_SLOT) buffer GroupTotals { uint group_totals[]; };
 
 float face_coverage(int axis, int face) {
   return axis == 0 ? coverage[0].at[face] : axis == 1 ? coverage[1].at[face] : coverage[2].at[face];

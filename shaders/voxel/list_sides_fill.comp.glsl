@@ -2,17 +2,16 @@
 // The two sides of every covered face of one axis, from the surfaces that its cells see; black ones where the list of
 // surfaces had no room in this frame. Areas follow (collect_area), but for axes that are not sliced in this frame.
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/groups.shared.h"
 #include "voxel/surfaces.glsl"
 
-layout(local_size_x = 32) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 0) readonly buffer Entries { uint entries[]; };
-layout(std430, binding = 1) readonly buffer Surfaces { Surface surfaces[]; };
-layout(std430, binding = 2) readonly buffer Coverage { float coverage[]; };
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) writeonly buffer Sides { Side sides[]; };
+layout(local_size_x = FACE_LANES) in;
+layout(std430, binding = FILL_ENTRIES_SLOT) readonly buffer Entries { uint entries[]; };
+layout(std430, binding = FILL_SURFACES_SLOT) readonly buffer Surfaces { Surface surfaces[]; };
+layout(std430, binding = FILL_COVERAGE_SLOT) readonly buffer Coverage { float coverage[]; };
+layout(std430, binding = SIDES_SLOT) writeonly buffer Sides { Side sides[]; };
 uniform int axis;
 
 void write_side(ivec3 cell, int face, Surface s, float covered) {
@@ -54,7 +53,8 @@ void fill_sides(int face) {
   write_side(upper, 2 * axis, above, covered);
 }
 
-const uint FACES = 256u;  // of a group; those with sides are collected and then shared out, so that no lane idles
+// Of a group; those with sides are collected and then shared out, so that no lane idles.
+const uint FACES = uint(VOXEL_GROUP);
 shared uint covered_faces[FACES];
 shared uint covered_count;
 

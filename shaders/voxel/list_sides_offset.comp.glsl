@@ -2,14 +2,14 @@
 // Adds the offset of its group (gl::Scan) to every cell's first side. Where the list has no room for all, the last cells have none,
 // but what is closed stays closed: whatever reads the list stays inside.
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
+#include "voxel/grid_block.glsl"
+#include "voxel/groups.shared.h"
 
-layout(local_size_x = 256) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 2) readonly buffer Wanted { uint wanted[4]; };
-layout(std430, binding = 3) buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer GroupTotals { uint group_totals[]; };
-layout(std430, binding = 5) writeonly buffer SideCount { uint side_count; };
+layout(local_size_x = VOXEL_GROUP) in;
+layout(std430, binding = WANTED_SLOT) readonly buffer Wanted { uint wanted[4]; };
+layout(std430, binding = CELL_SIDES_SLOT) buffer CellSides { uvec2 cell_sides[]; };
+layout(std430, binding = GROUP_TOTALS_SLOT) readonly buffer GroupTotals { uint group_totals[]; };
+layout(std430, binding = SIDE_COUNT_SLOT) writeonly buffer SideCount { uint side_count; };
 uniform uint capacity;
 
 void main() {

@@ -1,11 +1,14 @@
 // Marks what a surface does to faces: which parts of their fine lines it blocks, and the keys of the nearest surfaces. Comes
 // after keys.glsl and visit_faces.glsl.
+#include "voxel/slots.shared.h"
 
-layout(std430, binding = 0) buffer KeyLow { uint at[]; } key_low[FAMILIES];    // nearest to the cell below the face
-layout(std430, binding = FAMILIES) buffer KeyHigh { uint at[]; } key_high[FAMILIES];  // nearest to the cell above
-layout(std430, binding = 2 * FAMILIES) buffer Blocked { uint at[]; } blocked[FAMILIES];  // 27 bits
+// Keys of the surface nearest to the cell below the face, and above.
+layout(std430, binding = KEY_LOW_PLACE * FAMILIES) buffer KeyLow { uint at[]; } key_low[FAMILIES];
+layout(std430, binding = KEY_HIGH_PLACE * FAMILIES) buffer KeyHigh { uint at[]; } key_high[FAMILIES];
+layout(std430, binding = BLOCKED_PLACE * FAMILIES) buffer Blocked { uint at[]; } blocked[FAMILIES];  // 27 bits
 #ifdef ALPHA
-layout(std430, binding = 3 * FAMILIES) buffer Haze { uint at[]; } haze[FAMILIES];  // Run.haze of the centre line
+// Run.haze of the centre line.
+layout(std430, binding = HAZE_PLACE * FAMILIES) buffer Haze { uint at[]; } haze[FAMILIES];
 #endif
 
 void add_line(inout Run run, Lines lines, ivec2 line, dvec3 edges, double plane, int segment) {

@@ -2,12 +2,14 @@
 // Gives each face of one axis that some surface crosses a place in the list of surfaces. Places come in any order: what is
 // seen of them does not depend on it.
 #include "shared/global_index.shared.h"
+#include "voxel/groups.shared.h"
+#include "voxel/slots.shared.h"
 #include "voxel/surfaces.glsl"
 
-layout(local_size_x = 256) in;
-layout(std430, binding = 0) readonly buffer KeyLow { uint key_low[]; };
-layout(std430, binding = 1) writeonly buffer Entries { uint entries[]; };
-layout(std430, binding = 2) buffer Wanted { uint wanted[4]; };  // entries of each axis, sides
+layout(local_size_x = VOXEL_GROUP) in;
+layout(std430, binding = NUMBER_KEY_LOW_SLOT) readonly buffer KeyLow { uint key_low[]; };
+layout(std430, binding = NUMBER_ENTRIES_SLOT) writeonly buffer Entries { uint entries[]; };
+layout(std430, binding = WANTED_SLOT) buffer Wanted { uint wanted[4]; };  // entries of each axis, sides
 uniform int axis;
 uniform uint capacity;  // of the list; faces beyond it are black in this frame
 

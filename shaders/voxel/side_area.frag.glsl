@@ -2,10 +2,11 @@
 // Area of the surface that every side stands for: every fine line that meets a triangle stands for a piece of it, which is
 // added to the sides that show it, once for the cells in front of the triangle and once for those behind. The pieces in one
 // cell belong to the same sides, but for a few. Fixed point: sums do not depend on order.
+#include "voxel/slots.shared.h"
 #include "voxel/visit_cells.glsl"
 #include "voxel/find_side.glsl"
 
-layout(std430, binding = 0) buffer AreaFixed { uint area_fixed[]; };  // 2^-20 h^2
+layout(std430, binding = AREA_FIXED_SLOT) buffer AreaFixed { uint area_fixed[]; };  // 2^-20 h^2
 uniform int first_axis, last_axis;  // of the faces whose sides' areas are counted
 
 void add_piece(inout Heap heap, vec3 weights, float stopped) {}

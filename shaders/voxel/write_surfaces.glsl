@@ -1,11 +1,12 @@
 // The surfaces nearest to the two cells of each face write what the cells see. Comes after keys.glsl and
 // visit_faces.glsl.
+#include "voxel/slots.shared.h"
 #include "voxel/surfaces.glsl"
 
-layout(std430, binding = 0) readonly buffer KeyLow { uint at[]; } key_low[FAMILIES];
-layout(std430, binding = FAMILIES) readonly buffer KeyHigh { uint at[]; } key_high[FAMILIES];
-layout(std430, binding = 2 * FAMILIES) readonly buffer Entries { uint at[]; } entries[FAMILIES];
-layout(std430, binding = 3 * FAMILIES) writeonly buffer Surfaces { Surface at[]; } surfaces[FAMILIES];
+layout(std430, binding = KEY_LOW_PLACE * FAMILIES) readonly buffer KeyLow { uint at[]; } key_low[FAMILIES];
+layout(std430, binding = KEY_HIGH_PLACE * FAMILIES) readonly buffer KeyHigh { uint at[]; } key_high[FAMILIES];
+layout(std430, binding = ENTRIES_PLACE * FAMILIES) readonly buffer Entries { uint at[]; } entries[FAMILIES];
+layout(std430, binding = SURFACES_PLACE * FAMILIES) writeonly buffer Surfaces { Surface at[]; } surfaces[FAMILIES];
 
 // Every line of the triangle on this face: the keys say which of them won.
 void add_line(inout Run run, Lines lines, ivec2 line, dvec3 edges, double plane, int segment) {}

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi::screen {
 
 namespace {
@@ -39,7 +41,7 @@ void InjectReflectiveShadowMap::run(const VoxelGridGl& voxels, const ReflectiveS
     program_.set("light", light);
     program_.set("resolution", maps.resolution(light));
     int threads = (maps.resolution(light) + 3) / 4;
-    gl::dispatch({threads, threads, maps.layer_count(light)}, {8, 8, 1});
+    gl::dispatch({threads, threads, maps.layer_count(light)}, {SQUARE_GROUP, SQUARE_GROUP, 1});
     flux.collect(voxels, flux.punctual());
   }
 }

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/gl/raster_state.h"
+#include "shaders/screen/bounces/volume/slots.shared.h"
 
 namespace volgi::screen {
 
@@ -23,8 +24,8 @@ void RadianceGather::run(const GBuffer& gbuffer, const VoxelGridGl& voxels, cons
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
   gbuffer.bind();
-  radiance.sh.bind(3);
-  if (normal_occupancy != nullptr) normal_occupancy->bind(4);
+  radiance.sh.bind(RADIANCE_UNIT);
+  if (normal_occupancy != nullptr) normal_occupancy->bind(OCCUPANCY_UNIT);
   voxels.bind();
   program_.use();
   program_.set("occupied_only", int(normal_occupancy != nullptr));

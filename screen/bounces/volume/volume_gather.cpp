@@ -3,6 +3,7 @@
 #include <array>
 
 #include "core/gl/raster_state.h"
+#include "shaders/propagation/slots.shared.h"
 
 namespace volgi::screen {
 
@@ -22,8 +23,8 @@ void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Voxel
   framebuffer_.bind();
   gbuffer.bind();
   voxels.bind();
-  direct_irradiance.bind_storage(6);
-  indirect_irradiance.bind_storage(7);
+  direct_irradiance.bind_storage(DIRECT_IRRADIANCE_SLOT);
+  indirect_irradiance.bind_storage(INDIRECT_IRRADIANCE_SLOT);
   program_.use();
   const bool perspective = camera.kind == Camera::Kind::perspective;
   program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);

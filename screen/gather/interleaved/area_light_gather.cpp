@@ -5,8 +5,12 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/gather/interleaved/exact_pixels.shared.h"
+#include "shaders/screen/gather/interleaved/slots.shared.h"
+#include "shaders/screen/visibility/area_maps/slots.shared.h"
 #include "shaders/shared/disk_to_point.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 
@@ -75,7 +79,7 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
     arrange(lights, area_lights);
   }
   gbuffer.bind();
-  area_lights.buffer().bind_uniform(1);
+  area_lights.buffer().bind_uniform(AREA_LIGHTS_BLOCK);
   const auto set_up = [&](const gl::Program& program) {
     program.set("near_zone", options_.near_zone);
     program.set("area_light_count", area_lights.count());
@@ -104,13 +108,13 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
 void AreaLightGather::arrange(const VirtualLightListGl& lights, const VirtualAreaLights& area_lights) {
   light_count_ = lights.count();
   gl::reserve(arranged_, size_t(light_count_ + VIRTUAL_LIGHTS_PER_BLOCK) * kLightBytes);  // blocks are bound whole
-  lights.buffer.bind_storage(0);
-  area_lights.order().bind_storage(1);
-  area_lights.cluster_of().bind_storage(2);
-  arranged_.bind_storage(3);
+  lights.buffer.bind_storage(VIRTUAL_LIGHTS_SLOT);
+  area_lights.order().bind_storage(LIGHT_ORDER_SLOT);
+  area_lights.cluster_of().bind_storage(CLUSTER_OF_SLOT);
+  arranged_.bind_storage(ARRANGED_LIGHTS_SLOT);
   arrange_.set("light_count", light_count_);
   arrange_.use();
-  gl::dispatch_linear(size_t(light_count_), 64);
+  gl::dispatch_linear(size_t(light_count_), LINEAR_GROUP);
   glMemoryBarrier(GL_UNIFORM_BARRIER_BIT);
 }
 
@@ -122,7 +126,8 @@ void AreaLightGather::gather(const gl::Program& program, Range lights, const Dis
   do {
     const int block = first / kAlign * kAlign;
     const int end = std::min(block + VIRTUAL_LIGHTS_PER_BLOCK, lights.end);
-    glBindBufferRange(GL_UNIFORM_BUFFER, 0, arranged_.id(), GLintptr(block) * GLintptr(kLightBytes), kBlockBytes);
+    glBindBufferRange(GL_UNIFORM_BUFFER, VIRTUAL_LIGHTS_BLOCK, arranged_.id(), GLintptr(block) * GLintptr(kLightBytes),
+                      kBlockBytes);
     program.set("first_of_block", block);
     program.set("first_light", first);
     program.set("end_light", end);
@@ -136,24 +141,24 @@ void AreaLightGather::gather(const gl::Program& program, Range lights, const Dis
 
 void AreaLightGather::gather_interleaved() {
   const int n = options_.interleave;
-  (n > 1 ? indirect_irradiance_ : indirect_).bind_image(0, GL_READ_WRITE);
-  (n > 1 ? direct_irradiance_ : direct_).bind_image(1, GL_READ_WRITE);
+  (n > 1 ? indirect_irradiance_ : indirect_).bind_image(INDIRECT_IMAGE, GL_READ_WRITE);
+  (n > 1 ? direct_irradiance_ : direct_).bind_image(DIRECT_IMAGE, GL_READ_WRITE);
   gather_.set("interleave", n);
   gather_.use();
   const auto first_of = [&](int subset) { return int(int64_t(subset) * light_count_ / (n * n)); };
   for (int subset = 0; subset < n * n; ++subset) {
     gather_.set("offset", place_in_block(subset, n));
     gather(gather_, {first_of(subset), first_of(subset + 1)}, [&] {
-      gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {8, 8, 1});
+      gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
     });
   }
   wait_for_pictures();
 }
 
 void AreaLightGather::gather_listed() {
-  indirect_.bind_image(0, GL_READ_WRITE);
-  direct_.bind_image(1, GL_READ_WRITE);
-  list_.bind(0);
+  indirect_.bind_image(INDIRECT_IMAGE, GL_READ_WRITE);
+  direct_.bind_image(DIRECT_IMAGE, GL_READ_WRITE);
+  list_.bind(PIXEL_LIST_SLOT);
   gather_listed_.set("interleave", 1);
   gather_listed_.use();
   gather(gather_listed_, {0, light_count_}, [this] { list_.dispatch(); });
@@ -161,7 +166,7 @@ void AreaLightGather::gather_listed() {
 }
 
 void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m) {
-  error_estimate_.bind_image(1, GL_READ_WRITE);
+  error_estimate_.bind_image(BLUR_ERROR_IMAGE, GL_READ_WRITE);
   blur_.set("interleave", options_.interleave);
   blur_.set("max_distance_m", options_.blur_distance * scene_diagonal_m);
   blur_.set("min_cosine", options_.blur_cosine);
@@ -169,11 +174,11 @@ void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool 
   blur_.set("adds", adds ? 1 : 0);
   blur_.use();
   const auto along = [&](glm::ivec2 axis, const gl::Texture& source, const gl::Texture& target, bool ends) {
-    source.bind(3);
-    target.bind_image(0, GL_WRITE_ONLY);
+    source.bind(BLUR_SOURCE_UNIT);
+    target.bind_image(BLURRED_IMAGE, GL_WRITE_ONLY);
     blur_.set("axis", axis);
     blur_.set("ends", ends ? 1 : 0);
-    gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
+    gl::dispatch({size_.x, size_.y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
     wait_for_pictures();
   };
   along({1, 0}, from, half_blurred_, false);
@@ -183,18 +188,18 @@ void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool 
 void AreaLightGather::list_worst_pixels() {
   list_.clear();
   bins_.clear();
-  error_estimate_.bind_image(0, GL_READ_ONLY);
-  list_.bind(0);
-  bins_.bind_storage(1);
+  error_estimate_.bind_image(ERROR_ESTIMATE_IMAGE, GL_READ_ONLY);
+  list_.bind(PIXEL_LIST_SLOT);
+  bins_.bind_storage(ERROR_BINS_SLOT);
   count_.use();
-  gl::dispatch({size_.x, size_.y, 1}, {64, 64, 1});
+  gl::dispatch({size_.x, size_.y, 1}, {ERROR_TILE, ERROR_TILE, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   threshold_.set("max_pixels", GLuint(std::min(options_.exact_rows, float(size_.y)) * float(size_.x)));
   threshold_.use();
   gl::dispatch({1, 1, 1}, {1, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   list_program_.use();
-  gl::dispatch({size_.x, size_.y, 1}, {8, 8, 1});
+  gl::dispatch({size_.x, size_.y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

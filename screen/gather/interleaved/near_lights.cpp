@@ -4,7 +4,9 @@
 #include <array>
 
 #include "shaders/screen/gather/interleaved/near_tiles.shared.h"
+#include "shaders/screen/gather/interleaved/slots.shared.h"
 #include "shaders/shared/disk_to_point.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 
@@ -41,11 +43,11 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
   gl::reserve(masks_, small_count * words * sizeof(GLuint));
   gl::reserve(large_masks_, large_count * words * sizeof(GLuint));
   list_.clear();
-  subdivision.near_lights().bind_storage(0);
-  list_.bind(1);
-  masks_.bind_storage(2);
-  large_masks_.bind_storage(4);
-  boxes_.bind_storage(5);
+  subdivision.near_lights().bind_storage(NEAR_LIGHTS_SLOT);
+  list_.bind(NEAR_TILES_SLOT);
+  masks_.bind_storage(TILE_MASKS_SLOT);
+  large_masks_.bind_storage(LARGE_MASKS_SLOT);
+  boxes_.bind_storage(TILE_BOXES_SLOT);
   gbuffer.bind();
   const auto run = [&](const gl::Program& program, size_t threads) {
     program.set("tiles", small);
@@ -53,7 +55,7 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
     program.set("zone", zone_);
     program.set("light_count", lights.count());
     program.use();
-    gl::dispatch_linear(threads, 64);
+    gl::dispatch_linear(threads, LINEAR_GROUP);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   };
   run(boxes_program_, small_count);
@@ -72,13 +74,13 @@ void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
   gather_.set("zone", zone_);
   gather_.set("first_emitted", lights.reflected);
   gather_.set("with_direct", lights.emitted > 0 ? 1 : 0);
-  subdivision.near_lights().bind_storage(0);
-  list_.bind(1);
-  masks_.bind_storage(2);
-  subdivision.sublights().bind_storage(3);
+  subdivision.near_lights().bind_storage(NEAR_LIGHTS_SLOT);
+  list_.bind(NEAR_TILES_SLOT);
+  masks_.bind_storage(TILE_MASKS_SLOT);
+  subdivision.sublights().bind_storage(NEAR_SUBLIGHTS_SLOT);
   gbuffer.bind();
-  indirect_.bind_image(0, GL_WRITE_ONLY);
-  direct_.bind_image(1, GL_WRITE_ONLY);
+  indirect_.bind_image(INDIRECT_IMAGE, GL_WRITE_ONLY);
+  direct_.bind_image(DIRECT_IMAGE, GL_WRITE_ONLY);
   gather_.use();
   list_.dispatch();
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);

@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 
+#include "shaders/screen/base/slots.shared.h"
+#include "shaders/screen/gather/strided/slots.shared.h"
+#include "shaders/screen/visibility/negative/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi::screen {
 
 namespace {
@@ -66,15 +71,15 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
   const gl::Program& program = gather_program(points, negative != nullptr);
   program.use();
   program.set("stride", listed ? 1 : options_.stride);
-  target.bind_image(0, GL_READ_WRITE);
-  if (listed) list_.bind(0);
-  if (negative != nullptr) negative->buffer().bind_uniform(1);
+  target.bind_image(GATHERED_IMAGE, GL_READ_WRITE);
+  if (listed) list_.bind(PIXEL_LIST_SLOT);
+  if (negative != nullptr) negative->buffer().bind_uniform(NEGATIVE_LIGHTS_BLOCK);
   // At least one dispatch, which leaves black where there are no lights.
   const int first_block = first / VIRTUAL_LIGHTS_PER_BLOCK;
   const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_PER_BLOCK, first_block);
   for (int block = first_block; block <= last_block; ++block) {
     const int start = block * VIRTUAL_LIGHTS_PER_BLOCK;
-    glBindBufferRange(GL_UNIFORM_BUFFER, 0, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
+    glBindBufferRange(GL_UNIFORM_BUFFER, VIRTUAL_LIGHTS_BLOCK, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
     program.set("first_light", std::max(first - start, 0));
     program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_PER_BLOCK));
     program.set("begins", block == first_block ? 1 : 0);
@@ -83,7 +88,7 @@ void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights,
     if (listed) {
       list_.dispatch();
     } else {
-      gl::dispatch_linear(size_t(target.size().x) * size_t(target.size().y), 64);
+      gl::dispatch_linear(size_t(target.size().x) * size_t(target.size().y), LINEAR_GROUP);
     }
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
   }
@@ -98,12 +103,12 @@ void VirtualLightGather::find_discontinuities(const GBuffer& gbuffer, bool with_
   discontinuity_.set("unlike_distance_m", options_.distance * scene_diagonal_m);
   discontinuity_.set("with_direct", with_direct ? 1 : 0);
   bind_pixels(gbuffer);
-  coarse_indirect_.bind(3);
-  coarse_direct_.bind(4);
-  indirect_.bind_image(0, GL_WRITE_ONLY);
-  direct_.bind_image(1, GL_WRITE_ONLY);
-  list_.bind(0);
-  gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {8, 8, 1});
+  coarse_indirect_.bind(COARSE_INDIRECT_UNIT);
+  coarse_direct_.bind(COARSE_DIRECT_UNIT);
+  indirect_.bind_image(FINE_INDIRECT_IMAGE, GL_WRITE_ONLY);
+  direct_.bind_image(FINE_DIRECT_IMAGE, GL_WRITE_ONLY);
+  list_.bind(PIXEL_LIST_SLOT);
+  gl::dispatch({coarse_indirect_.size().x, coarse_indirect_.size().y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 

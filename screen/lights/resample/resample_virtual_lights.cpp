@@ -4,6 +4,8 @@
 #include <numeric>
 
 #include "shaders/screen/lights/resample/resample.shared.h"
+#include "shaders/screen/lights/resample/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 #include "shaders/shared/virtual_light.shared.h"
 
 namespace volgi::screen {
@@ -31,14 +33,14 @@ void ResampleVirtualLights::make_room(const VirtualLightListGl& candidates) {
 void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   make_room(candidates);
-  candidates.buffer.bind_storage(0);
-  receivers_.bind_storage(1);
-  weights_.bind_storage(2);
-  lights_.buffer.bind_storage(3);
-  ranges_.bind_storage(4);
+  candidates.buffer.bind_storage(CANDIDATES_SLOT);
+  receivers_.bind_storage(RECEIVERS_SLOT);
+  weights_.bind_storage(CANDIDATE_WEIGHTS_SLOT);
+  lights_.buffer.bind_storage(CHOSEN_LIGHTS_SLOT);
+  ranges_.bind_storage(CHOSEN_RANGES_SLOT);
   gbuffer.bind();
   receivers_program_.use();
-  gl::dispatch_linear(RESAMPLE_RECEIVERS, 64);
+  gl::dispatch_linear(RESAMPLE_RECEIVERS, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   int first = 0;
   for (const int count : lights_.of_light) {
@@ -59,13 +61,13 @@ void ResampleVirtualLights::resample(int first_candidate, int candidates, int fi
   sum_.set("first_candidate", first_candidate);
   sum_.set("candidate_count", candidates);
   weigh_.use();
-  gl::dispatch_linear(size_t(candidates), 64);
+  gl::dispatch_linear(size_t(candidates), LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_.run();
   resample_.set("first", first);
   resample_.set("count", count);
   resample_.use();
-  gl::dispatch_linear(size_t(count), 64);
+  gl::dispatch_linear(size_t(count), LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 

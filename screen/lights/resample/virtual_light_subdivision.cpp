@@ -1,5 +1,8 @@
 #include "screen/lights/resample/virtual_light_subdivision.h"
 
+#include "shaders/screen/lights/resample/slots.shared.h"
+#include "shaders/screen/lights/rsm/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 #include "shaders/shared/near_light.shared.h"
 
 namespace volgi::screen {
@@ -14,11 +17,11 @@ void VirtualLightSubdivision::run(const ReflectiveShadowMap& maps, const Virtual
   gl::reserve(sublights_, padded_count(lights) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight));
   gl::reserve(near_lights_, padded_count(lights) * sizeof(shared::NearLight));
   const auto bind = [&] {
-    lights.buffer.bind_storage(0);
-    candidates.buffer().bind_storage(5);
-    chosen.ranges().bind_storage(6);
-    sublights_.bind_storage(7);
-    near_lights_.bind_storage(8);
+    lights.buffer.bind_storage(SAMPLED_LIGHTS_SLOT);
+    candidates.buffer().bind_storage(DIVIDED_CANDIDATES_SLOT);
+    chosen.ranges().bind_storage(DIVIDED_RANGES_SLOT);
+    sublights_.bind_storage(MADE_SUBLIGHTS_SLOT);
+    near_lights_.bind_storage(MADE_NEAR_LIGHTS_SLOT);
   };
   int first = 0;
   for (int light = 0; light < int(lights.of_light.size()); ++light) {
@@ -45,7 +48,7 @@ void VirtualLightSubdivision::run_source(int light, int first, int count, bool a
   program_.set("along_curve", along_curve ? 1 : 0);
   program_.set("measure", float(measure));
   program_.use();
-  gl::dispatch_linear(size_t(count), 64);
+  gl::dispatch_linear(size_t(count), LINEAR_GROUP);
 }
 
 }  // namespace volgi::screen

@@ -12,13 +12,13 @@
 #include "core/halton.h"
 #include "core/hilbert.h"
 #include "core/light_cone.h"
+#include "shaders/screen/lights/rsm/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 namespace {
 
 using Sampling = VirtualLightOptions::Sampling;
-
-constexpr GLuint kLightsBinding = 0, kSamplesBinding = 3, kPyramidBinding = 4;
 
 const VirtualLightOptions& checked(const VirtualLightOptions& options) {
   const int asked = options.per_light.value_or(options.count);
@@ -150,7 +150,7 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
     const int count = of.of_light[size_t(light)];
     if (count == 0) continue;
     maps.bind(light);
-    samples_.bind_storage(kSamplesBinding);
+    samples_.bind_storage(LIGHT_SAMPLES_SLOT);
     lights_program_.set("light", light);
     lights_program_.set("count", count);
     lights_program_.set("first", first);
@@ -160,9 +160,9 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
     } else {
       sample_evenly(maps, light);
     }
-    list_.buffer.bind_storage(kLightsBinding);
+    list_.buffer.bind_storage(SAMPLED_LIGHTS_SLOT);
     lights_program_.use();
-    gl::dispatch_linear(size_t(count), 64);
+    gl::dispatch_linear(size_t(count), LINEAR_GROUP);
     first += count;
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -191,17 +191,17 @@ void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {
   for (const int size : sizes) values += size_t(layers) * size_t(size) * size_t(size);
   if (pyramid_.bytes() < values * sizeof(float)) pyramid_ = gl::Buffer(values * sizeof(float));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // the light before may still be read from the pyramid
-  pyramid_.bind_storage(kPyramidBinding);
+  pyramid_.bind_storage(FLUX_PYRAMID_SLOT);
   texels_program_.set("light", light);
   texels_program_.use();
-  gl::dispatch({sizes[0], sizes[0], layers}, {8, 8, 1});
+  gl::dispatch({sizes[0], sizes[0], layers}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   reduce_program_.set("resolution", maps.resolution(light));
   reduce_program_.set("layer_count", layers);
   reduce_program_.use();
   for (size_t level = 2; level <= sizes.size(); ++level) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     reduce_program_.set("level", int(level));
-    gl::dispatch({sizes[level - 1], sizes[level - 1], layers}, {8, 8, 1});
+    gl::dispatch({sizes[level - 1], sizes[level - 1], layers}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -30,7 +30,8 @@ class AreaLightShadow {
   /// Filters the maps for this frame.
   virtual void run(const ParaboloidDepthMaps& maps, gl::PassTimer& timer) = 0;
   virtual std::string define() const = 0;
-  /// Texture units 8 to 11; sets the uniforms of `program` (compiled with define()).
+  /// Textures (SHADOW_*_UNIT of shaders/screen/visibility/area_maps/slots.shared.h); sets the uniforms of `program`
+  /// (compiled with define()).
   virtual void bind(const ParaboloidDepthMaps& maps, const gl::Program& program) const = 0;
   virtual size_t bytes() const = 0;
 };

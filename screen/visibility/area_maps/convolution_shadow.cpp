@@ -3,6 +3,9 @@
 #include <bit>
 #include <cassert>
 
+#include "shaders/screen/visibility/area_maps/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi::screen {
 namespace {
 
@@ -32,27 +35,27 @@ void ConvolutionShadow::run(const ParaboloidDepthMaps& maps, gl::PassTimer& time
   const int resolution = maps.resolution();
   const int layers = maps.layers();
   assert(depth_.size() == glm::ivec3(resolution, resolution, layers));
-  maps.distance().bind(0);
-  farthest_.bind_image(0, GL_WRITE_ONLY);
+  maps.distance().bind(DISTANCE_MAP_UNIT);
+  farthest_.bind_image(FARTHEST_IMAGE, GL_WRITE_ONLY);
   range_program_.use();
   glDispatchCompute(GLuint(layers), 1, 1);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  farthest_.bind(1);
-  basis_.bind_image(0, GL_WRITE_ONLY);
-  basis_depth_.bind_image(1, GL_WRITE_ONLY);
-  depth_.bind_image(2, GL_WRITE_ONLY);
+  farthest_.bind(FARTHEST_UNIT);
+  basis_.bind_image(BASIS_IMAGE, GL_WRITE_ONLY);
+  basis_depth_.bind_image(BASIS_DEPTH_IMAGE, GL_WRITE_ONLY);
+  depth_.bind_image(BASIS_MEAN_IMAGE, GL_WRITE_ONLY);
   basis_program_.use();
-  gl::dispatch({resolution, resolution, layers}, {8, 8, 1});
+  gl::dispatch({resolution, resolution, layers}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   for (const gl::Texture* t : {&basis_, &basis_depth_, &depth_}) glGenerateTextureMipmap(t->id());
 }
 
 void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program& program) const {
   program.set("filter_as_printed", int(filter_ == Filter::printed));
-  basis_.bind(8);
-  basis_depth_.bind(9);
-  depth_.bind(10);
-  farthest_.bind(11);
+  basis_.bind(SHADOW_BASIS_UNIT);
+  basis_depth_.bind(SHADOW_BASIS_DEPTH_UNIT);
+  depth_.bind(SHADOW_DEPTH_UNIT);
+  farthest_.bind(SHADOW_FARTHEST_UNIT);
 }
 
 size_t ConvolutionShadow::bytes() const {

@@ -5,6 +5,9 @@
 #include <cassert>
 #include <limits>
 
+#include "shaders/screen/visibility/area_maps/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi::screen {
 namespace {
 
@@ -13,7 +16,7 @@ constexpr GLuint kTileCapacity = 1u << 19;
 constexpr size_t kHeadBytes = 2 * sizeof(GLuint);
 constexpr size_t kTileBytes = 2 * sizeof(GLuint);
 constexpr GLuint kTileGroups = 1024;                // share out the tiles; enough to fill a GPU
-constexpr GLsizei kTrianglesPerDispatch = 1 << 21;  // GL promises 65535 groups, of 64 triangles
+constexpr GLsizei kTrianglesPerDispatch = 1 << 21;  // GL promises 65535 groups
 
 }  // namespace
 
@@ -40,9 +43,10 @@ void ParaboloidDepthMaps::run(const gl::SceneBuffers& scene, const gl::Buffer& a
   const auto scope = timer.scope(name);
   constexpr float nothing = std::numeric_limits<float>::infinity();
   distance_.clear({nothing, nothing, nothing, nothing});
-  area_lights.bind_storage(1);
-  tiles_.bind_storage(2);
-  glBindImageTexture(0, distance_.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);  // atomic operations want integers
+  area_lights.bind_storage(MAPPED_AREA_LIGHTS_SLOT);
+  tiles_.bind_storage(MAP_TILES_SLOT);
+  // Atomic operations want integers.
+  glBindImageTexture(DISTANCE_BITS_IMAGE, distance_.id(), 0, GL_TRUE, 0, GL_READ_WRITE, GL_R32UI);
   for (const Programs* programs : {&opaque_, &alpha_}) {
     programs->triangles.set("resolution", resolution_);
     programs->tiles.set("resolution", resolution_);
@@ -51,7 +55,7 @@ void ParaboloidDepthMaps::run(const gl::SceneBuffers& scene, const gl::Buffer& a
   const auto visit = [&](const gl::SceneBuffers::Triangles& triangles) {
     draw(triangles.opaque ? opaque_ : alpha_, triangles, std::min(count, layers_));
   };
-  scene.visit_triangles(0, {&alpha_.triangles, &alpha_.tiles}, visit);
+  scene.visit_triangles(VERTICES_SLOT, {&alpha_.triangles, &alpha_.tiles}, visit);
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT);
 }
 
@@ -64,7 +68,7 @@ void ParaboloidDepthMaps::draw(const Programs& programs, const gl::SceneBuffers:
     programs.triangles.set("first_triangle", triangles.first + done);
     programs.triangles.set("triangle_count", count);
     programs.triangles.use();
-    gl::dispatch({count, layers, 1}, {64, 1, 1});
+    gl::dispatch({count, layers, 1}, {LINEAR_GROUP, 1, 1});
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     programs.tiles.use();
     glDispatchCompute(kTileGroups, 1, 1);

@@ -1,5 +1,6 @@
 #pragma once
 #include "screen/visibility/area_maps/area_light_shadow.h"
+#include "shaders/screen/visibility/area_maps/slots.shared.h"
 
 namespace volgi::screen {
 
@@ -10,7 +11,9 @@ class PercentageCloserShadow final : public AreaLightShadow {
  public:
   void run(const ParaboloidDepthMaps&, gl::PassTimer&) override {}
   std::string define() const override { return "AREA_LIGHT_SHADOW_PERCENTAGE_CLOSER"; }
-  void bind(const ParaboloidDepthMaps& maps, const gl::Program&) const override { maps.distance().bind(8); }
+  void bind(const ParaboloidDepthMaps& maps, const gl::Program&) const override {
+    maps.distance().bind(SHADOW_DISTANCE_UNIT);
+  }
   size_t bytes() const override { return 0; }
 };
 

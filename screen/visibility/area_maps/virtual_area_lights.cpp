@@ -7,14 +7,14 @@
 #include <string>
 
 #include "core/error.h"
+#include "shaders/screen/base/slots.shared.h"
+#include "shaders/screen/visibility/area_maps/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 namespace {
 
-constexpr GLuint kLightsBinding = 0, kClusterOfBinding = 1, kCentersBinding = 2, kProgressBinding = 3;
-constexpr GLuint kAreaLightsBinding = 4, kOrderBinding = 5;
-constexpr GLuint kCentersBlock = 0;  // the same buffer for reading only: llvmpipe reads uniform blocks faster
-constexpr int kListStep = 64;        // whole work groups of virtual_area_lights_assign.comp.glsl
+constexpr int kListStep = LINEAR_GROUP;  // lists fill whole work groups
 constexpr size_t kCenterBytes = 2 * sizeof(glm::vec4);
 
 const VirtualAreaLightOptions& checked(const VirtualAreaLightOptions& options) {
@@ -63,13 +63,13 @@ void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_dia
     cluster_of_ = gl::Buffer(list_bytes);
     order_ = gl::Buffer(list_bytes);
   }
-  lights.bind_storage(kLightsBinding);
-  cluster_of_.bind_storage(kClusterOfBinding);
-  centers_.bind_storage(kCentersBinding);
-  centers_.bind_uniform(kCentersBlock);
-  progress_.bind_storage(kProgressBinding);
-  area_lights_.bind_storage(kAreaLightsBinding);
-  order_.bind_storage(kOrderBinding);
+  lights.bind_storage(VIRTUAL_LIGHTS_SLOT);
+  cluster_of_.bind_storage(MADE_CLUSTER_OF_SLOT);
+  centers_.bind_storage(CENTERS_SLOT);
+  centers_.bind_uniform(CENTERS_BLOCK);
+  progress_.bind_storage(PROGRESS_SLOT);
+  area_lights_.bind_storage(MADE_AREA_LIGHTS_SLOT);
+  order_.bind_storage(MADE_ORDER_SLOT);
   for (const gl::Program* program : {&seed_, &assign_, &update_, &list_}) program->set("light_count", count);
   assign_.set("weight_per_m", options_.position_weight / std::max(scene_diagonal_m, 1e-30f));
 

@@ -3,13 +3,16 @@
 #include <cassert>
 #include <cmath>
 
+#include "shaders/screen/base/slots.shared.h"
+#include "shaders/screen/visibility/negative/negative_candidates.shared.h"
+#include "shaders/screen/visibility/negative/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
+
 namespace volgi::screen {
 
 namespace {
 
 using Method = NegativeLightOptions::Method;
-constexpr size_t kPixelCandidates =
-    64 * 64;  // CANDIDATES_X, _Y of shaders/screen/visibility/negative/negative_candidates.glsl
 
 /// Turns that light may have to take on its way into the last corner: three axes a round. What it does not find counts
 /// as closed, and loses negative lights there.
@@ -54,8 +57,8 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
     voxels->bind();
     order_sides(*voxels);
   }
-  lights.buffer.bind_storage(0);
-  lights_.bind_storage(1);
+  lights.buffer.bind_storage(VIRTUAL_LIGHTS_SLOT);
+  lights_.bind_storage(PLACED_LIGHTS_SLOT);
   if (voxels != nullptr) find_open_cells(*voxels, lights.reflected);
   for (const gl::Program* program : {&weigh_, &place_}) {
     if (program->id() == 0) continue;
@@ -70,14 +73,13 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
 }
 
 void NegativeLights::order_sides(const VoxelGridGl& voxels) {
-  constexpr int kBlockEdge = 8;  // of shaders/screen/visibility/negative/sides_by_block.glsl
-  const glm::ivec3 edge = (voxels.grid.cells + kBlockEdge - 1) / kBlockEdge;
+  const glm::ivec3 edge = (voxels.grid.cells + BLOCK_EDGE - 1) / BLOCK_EDGE;
   const size_t blocks = size_t(edge.x) * size_t(edge.y) * size_t(edge.z);
   gl::reserve(sides_by_block_, size_t(std::max(voxels.side_capacity, 1u)) * sizeof(GLuint));
   gl::reserve(block_starts_, blocks * sizeof(GLuint));
   const auto run = [&](const gl::Program& program) {
-    sides_by_block_.bind_storage(7);
-    block_starts_.bind_storage(2);
+    sides_by_block_.bind_storage(SIDES_BY_BLOCK_SLOT);
+    block_starts_.bind_storage(BLOCK_STARTS_SLOT);
     program.use();
     gl::dispatch_linear(blocks, 1);  // a group to each
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -91,28 +93,28 @@ void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count)
   const size_t bytes = cell_count(voxels.grid) * sizeof(GLuint);
   if (open_cells_.bytes() != bytes) open_cells_ = gl::Buffer(bytes);
   open_cells_.clear();
-  open_cells_.bind_storage(6);
+  open_cells_.bind_storage(OPEN_CELLS_SLOT);
   seed_.use();
   seed_.set("light_count", light_count);
-  gl::dispatch_linear(size_t(light_count), 64);
+  gl::dispatch_linear(size_t(light_count), LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   spread_.use();
   for (int round = 0; round < kSpreadRounds; ++round) {
     for (int axis = 0; axis < 3; ++axis) {
       const glm::ivec3 cells = voxels.grid.cells;
       spread_.set("axis", axis);
-      gl::dispatch_linear(cell_count(voxels.grid) / size_t(cells[axis]), 64);
+      gl::dispatch_linear(cell_count(voxels.grid) / size_t(cells[axis]), LINEAR_GROUP);
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     }
   }
 }
 
 void NegativeLights::choose(const VoxelGridGl* voxels) {
-  const size_t candidates = voxels != nullptr ? voxels->side_capacity : kPixelCandidates;
+  const size_t candidates = voxels != nullptr ? voxels->side_capacity : size_t(CANDIDATES_X) * CANDIDATES_Y;
   gl::reserve(weights_, std::max(candidates, size_t(1)) * sizeof(float));
-  weights_.bind_storage(2);
+  weights_.bind_storage(PASSED_FLUX_SLOT);
   weigh_.use();
-  gl::dispatch_linear(candidates, 64);
+  gl::dispatch_linear(candidates, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
   sum_->run();
 }

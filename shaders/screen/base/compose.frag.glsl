@@ -3,7 +3,7 @@
 #include "screen/base/compose.shared.h"
 #include "screen/base/gbuffer.glsl"
 
-layout(binding = GBUFFER_UNITS) uniform sampler2D layers[COMPOSE_LAYERS];
+layout(binding = COMPOSE_LAYERS_UNIT) uniform sampler2D layers[COMPOSE_LAYERS];
 uniform int layer_count;
 
 layout(location = 0) out vec4 radiance;

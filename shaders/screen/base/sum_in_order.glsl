@@ -9,7 +9,7 @@
 #define SUM_CHUNK 256
 
 layout(local_size_x = SUM_PARTS) in;
-layout(std430, binding = 8) buffer PartSums { SUMMED part_sums[SUM_PARTS]; };
+layout(std430, binding = PART_SUMS_SLOT) buffer PartSums { SUMMED part_sums[SUM_PARTS]; };
 shared SUMMED chunk[SUM_CHUNK];
 
 SUMMED sum_before_part(int part) {

@@ -3,5 +3,6 @@
 #include "shared/base.shared.h"
 
 #define SUM_PARTS 64  // of a list, summed beside each other
+#define PART_SUMS_SLOT 8
 
 #endif

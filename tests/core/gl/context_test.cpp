@@ -1,13 +1,10 @@
-// core/gl: OpenGL's errors end what is going on, whatever kind of context; limits are compared and named.
+// core/gl: OpenGL's errors end what is going on, whatever kind of context.
 #include "core/gl/context.h"
-
-#include <regex>
 
 #include "core/gl/limits.h"
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/readback.h"
-#include "core/gl/shader_source.h"
 #include "tests/support/gl_test.h"
 
 namespace volgi::test {
@@ -104,83 +101,6 @@ TEST_F(Contexts, EndInAnyOrder) {
   second.reset();
   EXPECT_GT(current_limits(), 0);
   EXPECT_NO_THROW(gl::throw_on_error());
-}
-
-TEST(Limits, NameWhatFallsShort) {
-  constexpr std::array needed{gl::Limit{GL_MAX_IMAGE_UNITS, "GL_MAX_IMAGE_UNITS", 4, "screen/a"},
-                              gl::Limit{GL_MAX_UNIFORM_BLOCK_SIZE, "GL_MAX_UNIFORM_BLOCK_SIZE", 65536, "screen/b"}};
-  const auto shortage = [&](GLint64 block) {
-    return gl::first_shortage(needed, [&](GLenum name) { return name == GL_MAX_IMAGE_UNITS ? GLint64(4) : block; });
-  };
-  EXPECT_EQ(shortage(65536), "");
-  EXPECT_EQ(shortage(16384), "GL_MAX_UNIFORM_BLOCK_SIZE is 16384, and screen/b needs 65536");
-}
-
-/// What GL 4.5 promises would not do: such a driver is refused by name.
-TEST(Limits, OfThePromisedMinimumAreNotEnough) {
-  const std::string shortage = gl::first_shortage(gl::needed_limits(), [](GLenum name) -> GLint64 {
-    switch (name) {
-      case GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS:
-        return 8;
-      default:
-        return 1 << 20;
-    }
-  });
-  EXPECT_EQ(shortage.find("GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS is 8"), 0u) << shortage;
-}
-
-GLint64 need_of(GLenum name) {
-  for (const gl::Limit& limit : gl::needed_limits()) {
-    if (limit.name == name) return limit.need;
-  }
-  ADD_FAILURE() << "not in the table: " << name;
-  return 0;
-}
-
-struct Declared {
-  int end = 0, count = 0;  // the binding behind the last, and how many
-};
-
-Declared declared(const std::string& text, const std::regex& pattern) {
-  Declared all;
-  for (std::sregex_iterator it(text.begin(), text.end(), pattern), none; it != none; ++it) {
-    const int size = (*it)[2].length() > 0 ? std::stoi((*it)[2]) : 1;  // of an array of blocks
-    all.end = std::max(all.end, std::stoi((*it)[1]) + size);
-    all.count += size;
-  }
-  return all;
-}
-
-/// What a stage declares, in all of its variants together: an upper bound of what is active.
-void expect_within_limits(const std::string& name, const std::string& text) {
-  static const std::regex storage(R"(layout\(std430, binding = (\d+)\)[^;{]*buffer[^}]*\}\s*\w*(?:\[(\d+)\])?;)");
-  static const std::regex uniform(R"(layout\(std140, binding = (\d+)\)\s*uniform\b()?)");
-  static const std::regex image(R"(layout\([^)]*binding = (\d+)[^)]*\)[^;]*image\w+ \w+()?;)");
-  static const std::regex sampler(R"(layout\([^)]*binding = (\d+)[^)]*\)[^;]*sampler\w+ \w+()?;)");
-  const bool compute = name.ends_with(".comp.glsl");
-  SCOPED_TRACE(name);
-  const Declared buffers = declared(text, storage);
-  EXPECT_LE(buffers.end, need_of(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS));
-  EXPECT_LE(buffers.count,
-            need_of(compute ? GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS : GL_MAX_FRAGMENT_SHADER_STORAGE_BLOCKS));
-  EXPECT_LE(declared(text, uniform).count, need_of(GL_MAX_COMPUTE_UNIFORM_BLOCKS));
-  EXPECT_LE(declared(text, image).end, need_of(GL_MAX_IMAGE_UNITS));
-  EXPECT_LE(declared(text, image).count, need_of(GL_MAX_COMPUTE_IMAGE_UNIFORMS));
-  EXPECT_LE(declared(text, sampler).end,
-            need_of(compute ? GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS : GL_MAX_TEXTURE_IMAGE_UNITS));
-}
-
-TEST(Limits, CoverWhatShadersDeclare) {
-  int buffers = 0;
-  for (const gl::ShaderFile& file : gl::shader_files()) {
-    const std::string name(file.name);
-    const bool stage = name.ends_with(".comp.glsl") || name.ends_with(".frag.glsl");
-    if (!stage || name.starts_with("voxel/single_pass")) continue;  // that one is tried, and left where it does not fit
-    const std::string text = gl::expand_shader(file.name);
-    expect_within_limits(name, text);
-    buffers += text.find("std430") != std::string::npos;
-  }
-  EXPECT_GT(buffers, 40) << "the patterns must find something";
 }
 
 TEST_F(Contexts, FormatsThatCannotBeRenderedToAreReplaced) {

@@ -1,10 +1,11 @@
 #version 450 core
 // Deposits the light that the texels of one light's reflective shadow map reflect. A thread takes 4 x 4 texels; those that
 // lie on the first one's plane, within half a cell of it, go to one place with all their power.
+#include "shared/group_sizes.shared.h"
 #include "shared/reflective_shadow_map.glsl"
 #include "propagation/deposit.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 uniform int light;
 uniform int resolution;
 

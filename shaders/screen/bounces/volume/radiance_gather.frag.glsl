@@ -5,13 +5,13 @@
 // Set by the program: ORDER = 2
 #include "shared/constants.glsl"
 #include "screen/base/gbuffer.glsl"
-#include "shared/grid.shared.h"
+#include "screen/bounces/volume/slots.shared.h"
 #include "shared/octahedral.glsl"
 #include "shared/sh.shared.h"
+#include "voxel/grid_block.glsl"
 
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(binding = 3) uniform sampler3D radiance_sh;       // coefficients stacked in z
-layout(binding = 4) uniform sampler3D normal_occupancy;  // w: occupancy
+layout(binding = RADIANCE_UNIT) uniform sampler3D radiance_sh;        // coefficients stacked in z
+layout(binding = OCCUPANCY_UNIT) uniform sampler3D normal_occupancy;  // w: occupancy
 uniform bool occupied_only;
 
 layout(location = 0) out vec4 direct_radiance;

@@ -1,53 +1,24 @@
 #version 450 core
-// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their sub-lights light it. Lights come in the order of their area lights, so that
-// each one's shadow is looked up once.
-#define SUBLIGHTS_BINDING 8
+// What every side reflects of the virtual lights: A rho E [W]. Of those that it is near to, their sub-lights light it.
+// Lights come in the order of their area lights, so that each one's shadow is looked up once.
+#include "screen/bounces/volume/slots.shared.h"
+#define SUBLIGHTS_SLOT SIDE_SUBLIGHTS_SLOT
 #include "screen/lights/resample/sublights.glsl"
 #include "shared/global_index.shared.h"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-#include "screen/visibility/area_maps/virtual_area_light.shared.h"
-#include "shared/virtual_light.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "screen/visibility/area_maps/area_light_shadow.glsl"
+#include "screen/visibility/area_maps/area_lights_block.glsl"
+#include "screen/visibility/area_maps/light_order.glsl"
+#include "voxel/grid_block.glsl"
+#include "voxel/side_count.glsl"
+#include "voxel/side_middle.glsl"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MAX_VIRTUAL_AREA_LIGHTS]; };
-layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
-layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
-layout(std430, binding = 6) writeonly buffer Emitted { vec4 emitted_flux[]; };
-layout(std430, binding = 7) writeonly buffer Punctual { vec4 punctual_flux[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = GATHERED_EMITTED_SLOT) writeonly buffer Emitted { vec4 emitted_flux[]; };
+layout(std430, binding = GATHERED_PUNCTUAL_SLOT) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
 uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
-
-const float SIMILAR_NORMAL_COSINE = 0.70710678;  // within 45 degrees
-
-// A point for all of a side's surface, cell units: on the line through the middle of what the cell's other sides leave of the
-// cell; those of its own surface leave all. propagation/light_in/side_start_internal.h.
-vec3 middle_of(Side side) {
-  ivec3 cell = cell_coord(grid, side.cell);
-  uvec2 faces = cell_sides[side.cell];
-  vec3 low = vec3(cell), high = low + 1.0;
-  for (int face = 0; face < 6; ++face) {
-    if (!has_side(faces, face)) continue;
-    uint other = side_index(faces, face);
-    if (dot(sides[other].normal, side.normal) >= SIMILAR_NORMAL_COSINE) continue;
-    if (face_sign(face) < 0) low[face_axis(face)] = sides[other].depth;
-    else high[face_axis(face)] = sides[other].depth;
-  }
-  vec3 off = mix(vec3(0.0), 0.5 * (low + high) - vec3(cell) - 0.5, lessThan(low, high));
-  int axis = face_axis(side.face);
-  off[axis] = 0.0;
-  // Along the side's plane; a plane that the face's axis hardly meets is not followed far.
-  float slope = max(abs(side.normal[axis]), 0.1) * (side.normal[axis] < 0.0 ? -1.0 : 1.0);
-  vec3 middle = vec3(cell) + 0.5 + off;
-  middle[axis] = side.depth - dot(side.normal, off) / slope;
-  return middle;
-}
 
 void main() {
   uint s = global_index();

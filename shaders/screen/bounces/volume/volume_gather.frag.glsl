@@ -3,18 +3,14 @@
 // point half a cell in front of it, sides with like normals only, and only of cells that lie on the pixel's side of their
 // own surfaces, so that neither the surface nor the room behind it lights it. docs/theory.md#reconstruction.
 #include "shared/constants.glsl"
-#include "screen/base/gbuffer.glsl"
-#include "shared/grid.shared.h"
-#include "shared/side.shared.h"
-#include "shared/octahedral.glsl"
-
-layout(std140, binding = 0) uniform GridBlock { Grid grid; };
-layout(std430, binding = 3) readonly buffer CellSides { uvec2 cell_sides[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 6) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
-layout(std430, binding = 7) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
-
 #include "propagation/neighbourhood.glsl"
+#include "propagation/slots.shared.h"
+#include "screen/base/gbuffer.glsl"
+#include "shared/octahedral.glsl"
+#include "voxel/sides.glsl"
+
+layout(std430, binding = DIRECT_IRRADIANCE_SLOT) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
+layout(std430, binding = INDIRECT_IRRADIANCE_SLOT) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
 
 uniform vec4 viewer;  // xyz position, w 1; or towards the viewer, w 0 (orthographic)
 

@@ -6,23 +6,23 @@
 #include "shared/constants.glsl"
 #include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
+#include "shared/group_sizes.shared.h"
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
-#include "screen/visibility/area_maps/virtual_area_light.shared.h"
-#include "shared/virtual_light.shared.h"
 #include "screen/visibility/area_maps/area_light_shadow.glsl"
+#include "screen/visibility/area_maps/area_lights_block.glsl"
 #include "screen/base/coarse_pixels.glsl"
+#include "screen/base/virtual_lights_block.glsl"
+#include "screen/gather/interleaved/slots.shared.h"
 
 #ifdef LISTED
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = PIXEL_LIST_SLOT) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #else
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 #endif
-layout(binding = 0, rgba32f) uniform image2D indirect;
-layout(binding = 1, rgba32f) uniform image2D direct;
-layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_PER_BLOCK]; };
-layout(std140, binding = 1) uniform AreaLights { VirtualAreaLight area_lights[MAX_VIRTUAL_AREA_LIGHTS]; };
+layout(binding = INDIRECT_IMAGE, rgba32f) uniform image2D indirect;
+layout(binding = DIRECT_IMAGE, rgba32f) uniform image2D direct;
 uniform int first_of_block;  // its lights[0], in the order of clusters
 uniform int first_light;     // taken from the block, in that order
 uniform int end_light;

@@ -3,13 +3,12 @@
 // is behind every area light.
 #include "shared/global_index.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
-#include "shared/virtual_light.shared.h"
+#include "screen/visibility/area_maps/light_order.glsl"
+#include "screen/gather/interleaved/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
-layout(std430, binding = 1) readonly buffer Order { uint order[]; };
-layout(std430, binding = 2) readonly buffer Clusters { uint cluster_of[]; };
-layout(std430, binding = 3) writeonly buffer Arranged { VirtualLight arranged[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = ARRANGED_LIGHTS_SLOT) writeonly buffer Arranged { VirtualLight arranged[]; };
 uniform int light_count;
 
 void main() {

@@ -1,9 +1,10 @@
 #version 450 core
 // The lowest bin such that no more than `most` pixels lie in it and above.
 #include "screen/gather/interleaved/exact_pixels.glsl"
+#include "screen/gather/interleaved/slots.shared.h"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 1) buffer Bins { uint threshold; uint count[]; };
+layout(std430, binding = ERROR_BINS_SLOT) buffer Bins { uint threshold; uint count[]; };
 uniform uint max_pixels;
 shared uint sums[64];
 

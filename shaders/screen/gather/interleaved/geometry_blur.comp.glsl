@@ -7,13 +7,16 @@
 // Fourth channel and `error_estimate`: variance of the mean [luminance squared], judged by what varies. See below.
 #include "shared/constants.glsl"
 #include "screen/base/gbuffer.glsl"
+#include "screen/gather/interleaved/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 3) uniform sampler2D irradiance;  // fourth channel: the variance; read along the second axis only
-layout(binding = 0, rgba32f) uniform writeonly image2D blurred;
-layout(binding = 1, r32f) uniform image2D error_estimate;  // radiance
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
+// Fourth channel: the variance; read along the second axis only.
+layout(binding = BLUR_SOURCE_UNIT) uniform sampler2D irradiance;
+layout(binding = BLURRED_IMAGE, rgba32f) uniform writeonly image2D blurred;
+layout(binding = BLUR_ERROR_IMAGE, r32f) uniform image2D error_estimate;  // radiance
 uniform int interleave;
 uniform ivec2 axis;
 uniform float max_distance_m;

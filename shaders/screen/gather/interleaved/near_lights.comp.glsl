@@ -1,14 +1,15 @@
 #version 450 core
 // Light of sub-lights on the pixels near them.
-#define SUBLIGHTS_BINDING 3
+#include "screen/gather/interleaved/slots.shared.h"
+#define SUBLIGHTS_SLOT NEAR_SUBLIGHTS_SLOT
 #include "shared/constants.glsl"
 #include "screen/lights/resample/sublights.glsl"
 #include "screen/base/gbuffer.glsl"
 #include "screen/gather/interleaved/near_lights.glsl"
 
 layout(local_size_x = NEAR_TILE, local_size_y = NEAR_TILE) in;
-layout(binding = 0, rgba32f) writeonly uniform image2D indirect;
-layout(binding = 1, rgba32f) writeonly uniform image2D direct;
+layout(binding = INDIRECT_IMAGE, rgba32f) writeonly uniform image2D indirect;
+layout(binding = DIRECT_IMAGE, rgba32f) writeonly uniform image2D direct;
 uniform int first_emitted;
 uniform int with_direct;
 

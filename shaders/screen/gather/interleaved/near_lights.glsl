@@ -2,12 +2,14 @@
 #ifndef VOLGI_NEAR_LIGHTS_GLSL
 #define VOLGI_NEAR_LIGHTS_GLSL
 #include "screen/gather/interleaved/near_tiles.shared.h"
+#include "screen/gather/interleaved/slots.shared.h"
 #include "shared/near_light.shared.h"
 #include "screen/base/work_list.glsl"
 
-layout(std430, binding = 1) buffer TileList { WorkListHead head; uint listed_tiles[]; };  // a group a tile, in no order
-layout(std430, binding = 0) readonly buffer NearLights { NearLight near_lights[]; };
-layout(std430, binding = 2) buffer Masks { uint masks[]; };  // 32 lights a word, tile after tile
+// A group a tile, in no order.
+layout(std430, binding = NEAR_TILES_SLOT) buffer TileList { WorkListHead head; uint listed_tiles[]; };
+layout(std430, binding = NEAR_LIGHTS_SLOT) readonly buffer NearLights { NearLight near_lights[]; };
+layout(std430, binding = TILE_MASKS_SLOT) buffer Masks { uint masks[]; };  // 32 lights a word, tile after tile
 uniform ivec2 tiles;
 uniform int words;   // of a tile's mask
 uniform float zone;  // areas of a light

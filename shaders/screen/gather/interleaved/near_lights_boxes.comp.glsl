@@ -3,8 +3,9 @@
 #include "screen/base/gbuffer.glsl"
 #include "shared/global_index.shared.h"
 #include "screen/gather/interleaved/tile_boxes.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 
 void main() {
   int index = int(global_index());

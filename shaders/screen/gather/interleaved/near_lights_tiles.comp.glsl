@@ -4,9 +4,10 @@
 #include "shared/global_index.shared.h"
 #include "screen/gather/interleaved/near_lights.glsl"
 #include "screen/gather/interleaved/tile_boxes.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 4) buffer LargeMasks { uint large_masks[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = LARGE_MASKS_SLOT) buffer LargeMasks { uint large_masks[]; };
 uniform int light_count;
 
 bool reaches(NearLight light, Box box) {

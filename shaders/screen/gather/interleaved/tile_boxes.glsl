@@ -7,7 +7,7 @@ struct Box {
   vec3 least, most;
 };
 
-layout(std430, binding = 5) buffer Boxes { vec4 boxes[]; };  // two for each tile
+layout(std430, binding = TILE_BOXES_SLOT) buffer Boxes { vec4 boxes[]; };  // two for each tile
 
 bool is_empty(Box box) { return box.least.x > box.most.x; }
 

@@ -4,15 +4,18 @@
 // or four coarse pixels, all of which must be like the pixel; and albedo comes after it, at full resolution.
 #include "shared/constants.glsl"
 #include "screen/base/gbuffer.glsl"
+#include "shared/group_sizes.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/base/coarse_pixels.glsl"
+#include "screen/base/slots.shared.h"
+#include "screen/gather/strided/slots.shared.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 3) uniform sampler2D coarse_indirect;  // irradiance; w = 0 in the background
-layout(binding = 4) uniform sampler2D coarse_direct;
-layout(binding = 0, rgba32f) uniform writeonly image2D indirect_radiance;
-layout(binding = 1, rgba32f) uniform writeonly image2D direct_radiance;
-layout(std430, binding = 0) buffer PixelList { WorkListHead head; uint listed[]; };
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
+layout(binding = COARSE_INDIRECT_UNIT) uniform sampler2D coarse_indirect;  // irradiance; w = 0 in the background
+layout(binding = COARSE_DIRECT_UNIT) uniform sampler2D coarse_direct;
+layout(binding = FINE_INDIRECT_IMAGE, rgba32f) uniform writeonly image2D indirect_radiance;
+layout(binding = FINE_DIRECT_IMAGE, rgba32f) uniform writeonly image2D direct_radiance;
+layout(std430, binding = PIXEL_LIST_SLOT) buffer PixelList { WorkListHead head; uint listed[]; };
 uniform float threshold;
 uniform float contrast;
 uniform float unlike_distance_m;
@@ -44,7 +47,7 @@ Coarse coarse_at(ivec2 texel, ivec2 size) {
 
 void list(ivec2 pixel) {
   uint slot;
-  APPEND_TO_LIST(head, 64u, slot)
+  APPEND_TO_LIST(head, uint(LINEAR_GROUP), slot)
   listed[slot] = pack_pixel(pixel);
 }
 

@@ -6,20 +6,22 @@
 #include "shared/constants.glsl"
 #include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
+#include "screen/base/virtual_lights_block.glsl"
+#include "screen/gather/strided/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/visibility/negative/negative_light.shared.h"
-#include "shared/virtual_light.shared.h"
 #include "screen/base/coarse_pixels.glsl"
 
-layout(local_size_x = 64) in;
-layout(binding = 0, rgba32f) uniform image2D target;  // irradiance; when the sum ends at full resolution radiance
-layout(std140, binding = 0) uniform Lights { VirtualLight lights[VIRTUAL_LIGHTS_PER_BLOCK]; };
+layout(local_size_x = LINEAR_GROUP) in;
+// Irradiance; when the sum ends at full resolution radiance.
+layout(binding = GATHERED_IMAGE, rgba32f) uniform image2D target;
 uniform int first_light;  // of the block
 uniform int end_light;
 uniform int begins;
 uniform int ends;
 #ifdef LISTED
-layout(std430, binding = 0) readonly buffer PixelList { WorkListHead head; uint listed[]; };
+layout(std430, binding = PIXEL_LIST_SLOT) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #endif
 
 vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
@@ -36,7 +38,7 @@ vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
 }
 
 #ifdef NEGATIVE
-layout(std140, binding = 1) uniform NegativeLights { NegativeLight negative_lights[MAX_NEGATIVE_LIGHTS]; };
+#include "screen/visibility/negative/negative_lights_block.glsl"
 uniform int negative_count;
 
 vec3 sum_of_negative_lights(vec3 x, vec3 normal) {

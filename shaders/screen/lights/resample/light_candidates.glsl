@@ -2,17 +2,17 @@
 #ifndef VOLGI_LIGHT_CANDIDATES_GLSL
 #define VOLGI_LIGHT_CANDIDATES_GLSL
 #include "screen/lights/resample/resample.shared.h"
+#include "screen/lights/resample/slots.shared.h"
 #include "shared/virtual_light.shared.h"
-
 
 struct Receiver {
   vec4 position;  // w = 0: none, the background
   vec4 normal;
 };
-layout(std430, binding = 0) readonly buffer Candidates { VirtualLight candidate_lights[]; };
-layout(std430, binding = 1) buffer Receivers { Receiver receivers[RESAMPLE_RECEIVERS]; };
+layout(std430, binding = CANDIDATES_SLOT) readonly buffer Candidates { VirtualLight candidate_lights[]; };
+layout(std430, binding = RECEIVERS_SLOT) buffer Receivers { Receiver receivers[RESAMPLE_RECEIVERS]; };
 // (light sent to the receivers, flux) of a candidate, luminance; then both summed from the source's first on.
-layout(std430, binding = 2) buffer Weights { vec2 weights[]; };
+layout(std430, binding = CANDIDATE_WEIGHTS_SLOT) buffer Weights { vec2 weights[]; };
 uniform int first_candidate;
 uniform int candidate_count;
 uniform float flux_share;

@@ -2,12 +2,13 @@
 // Pixels that stand for the picture: the first 256 points of the Halton sequence of bases 2 and 3.
 #include "screen/base/gbuffer.glsl"
 #include "shared/global_index.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
 #include "screen/base/halton_pixel.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 
 void main() {
   uint k = global_index();

@@ -1,11 +1,13 @@
 #version 450 core
 // Systematic resampling: the candidates that equal steps through the summed weights meet.
+#include "screen/lights/resample/slots.shared.h"
 #include "shared/global_index.shared.h"
 #include "screen/lights/resample/light_candidates.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 3) writeonly buffer Lights { VirtualLight chosen_lights[]; };
-layout(std430, binding = 4) writeonly buffer Ranges { vec2 ranges[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = CHOSEN_LIGHTS_SLOT) writeonly buffer Lights { VirtualLight chosen_lights[]; };
+layout(std430, binding = CHOSEN_RANGES_SLOT) writeonly buffer Ranges { vec2 ranges[]; };
 uniform int first;
 uniform int count;
 

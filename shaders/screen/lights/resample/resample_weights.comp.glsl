@@ -2,10 +2,11 @@
 // What each candidate sends to the receivers, without visibility: near enough by Nichols' form (2010, eq. 4.1).
 #include "shared/constants.glsl"
 #include "shared/global_index.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/luminance.glsl"
 #include "screen/lights/resample/light_candidates.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 
 void main() {
   int i = int(global_index());

@@ -1,13 +1,13 @@
-// Light of the sub-lights of virtual lights on what is near those (shared/near_light.shared.h). SUBLIGHTS_BINDING: of their
-// buffer.
+// Light of the sub-lights of virtual lights on what is near those (shared/near_light.shared.h). The including file
+// defines SUBLIGHTS_SLOT, where their buffer is bound.
 #ifndef VOLGI_SUBLIGHTS_GLSL
 #define VOLGI_SUBLIGHTS_GLSL
 #include "shared/disk_to_point.shared.h"
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 
-layout(std430, binding = SUBLIGHTS_BINDING) readonly buffer SubLights { vec4 sublight_halves[]; };  // of SubLight, two each: software rasterizers load vectors whole
-
+// SubLight in two halves each: software rasterizers load vectors whole.
+layout(std430, binding = SUBLIGHTS_SLOT) readonly buffer SubLights { vec4 sublight_halves[]; };
 
 #ifdef FROM_AFAR  // `zone` is DISK_FAR_AREAS at least, so that coarse sub-lights are
 #define COARSE_DISK_TO_POINT disk_to_point_from_afar

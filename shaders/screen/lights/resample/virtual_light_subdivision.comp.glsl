@@ -1,16 +1,19 @@
 #version 450 core
 // The coarse and fine sub-lights of every virtual light of one source.
+#include "screen/lights/resample/slots.shared.h"
 #include "shared/global_index.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/hilbert.shared.h"
 #include "shared/near_light.shared.h"
 #include "shared/octahedral.glsl"
 #include "screen/lights/rsm/virtual_light_sample.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 5) readonly buffer Candidates { VirtualLight candidate_lights[]; };
-layout(std430, binding = 6) readonly buffer Ranges { vec2 ranges[]; };  // of the candidates of the source, from 0
-layout(std430, binding = 7) writeonly buffer SubLights { SubLight sublights[]; };
-layout(std430, binding = 8) writeonly buffer NearLights { NearLight near_lights[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = DIVIDED_CANDIDATES_SLOT) readonly buffer Candidates { VirtualLight candidate_lights[]; };
+// Of the candidates of the source, from 0.
+layout(std430, binding = DIVIDED_RANGES_SLOT) readonly buffer Ranges { vec2 ranges[]; };
+layout(std430, binding = MADE_SUBLIGHTS_SLOT) writeonly buffer SubLights { SubLight sublights[]; };
+layout(std430, binding = MADE_NEAR_LIGHTS_SLOT) writeonly buffer NearLights { NearLight near_lights[]; };
 uniform int first_candidate;
 uniform int candidate_count;
 uniform int along_curve;  // 1: sub-lights are new samples; 0: the nearest candidates

@@ -2,12 +2,14 @@
 // Virtual lights of equal luminance: Halton points of the unit square, warped from block to block of the pyramid until
 // they lie as densely as the texels reflect light (Clarberg et al. 2005, hierarchical sample warping, in blocks of 4 x
 // 4). Layers lie side by side along x.
+#include "screen/lights/rsm/slots.shared.h"
 #include "shared/global_index.shared.h"
 #include "screen/lights/rsm/virtual_light_at.glsl"
 #include "screen/lights/rsm/flux_importance.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 4) readonly buffer Pyramid { float pyramid[]; };
+layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = FLUX_PYRAMID_SLOT) readonly buffer Pyramid { float pyramid[]; };
 
 // One of up to 6 weights in proportion; `at` in [0, 1) chooses, and is stretched over what it chose. A weight of 0 is
 // never chosen unless all are.

@@ -1,9 +1,11 @@
 #version 450 core
 // Makes one level of the pyramid of reflected light from the one below.
 #include "screen/lights/rsm/flux_importance.glsl"
+#include "screen/lights/rsm/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 4) buffer Pyramid { float pyramid[]; };
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
+layout(std430, binding = FLUX_PYRAMID_SLOT) buffer Pyramid { float pyramid[]; };
 uniform int resolution;
 uniform int layer_count;
 uniform int level;  // to make, from 2

@@ -1,10 +1,12 @@
 #version 450 core
 // Level 1 of the pyramid of reflected light.
+#include "screen/lights/rsm/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/reflective_shadow_map.glsl"
 #include "screen/lights/rsm/flux_importance.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(std430, binding = 4) writeonly buffer Pyramid { float pyramid[]; };
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
+layout(std430, binding = FLUX_PYRAMID_SLOT) writeonly buffer Pyramid { float pyramid[]; };
 uniform int light;
 
 void main() {

@@ -1,10 +1,11 @@
 // Where a light's ray meets what its reflective shadow map shows: between the texels' centres, so that virtual lights
 // move as smoothly as the light does.
+#include "screen/lights/rsm/slots.shared.h"
 #include "shared/reflective_shadow_map.glsl"
 #include "shared/virtual_light.shared.h"
 
-layout(std430, binding = 0) buffer Lights { VirtualLight virtual_lights[]; };
-layout(std430, binding = 3) readonly buffer Samples { vec4 samples[]; };
+layout(std430, binding = SAMPLED_LIGHTS_SLOT) buffer Lights { VirtualLight virtual_lights[]; };
+layout(std430, binding = LIGHT_SAMPLES_SLOT) readonly buffer Samples { vec4 samples[]; };
 uniform int light;
 uniform int count;         // virtual lights of this light
 uniform int first;         // where they begin among the virtual lights of all

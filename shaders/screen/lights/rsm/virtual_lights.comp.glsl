@@ -2,10 +2,11 @@
 // One virtual light for each of the equal parts of one light's cone, or of a sun's rectangle: samples of the host's
 // (Halton's), or equal steps along Hilbert's curve (jittered, they were worse: room 14.1 % instead of 10.5 %).
 #include "shared/global_index.shared.h"
+#include "shared/group_sizes.shared.h"
 #include "shared/hilbert.shared.h"
 #include "screen/lights/rsm/virtual_light_sample.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 uniform float measure;    // of one part: solid angle [sr], of a sun area across the light [m^2]
 uniform int along_curve;  // 1: along Hilbert's curve
 

@@ -2,16 +2,18 @@
 // Basis images of convolution soft shadow maps: cosines in layer 2k, sines in layer 2k + 1, the same times depth, and
 // depth itself. Dong et al. 2009, sections 4.1 and 6.
 #include "screen/visibility/area_maps/convolution_basis.glsl"
+#include "screen/visibility/area_maps/slots.shared.h"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2DArray distance_map;
-layout(binding = 1) uniform sampler2D farthest;
+layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
+layout(binding = DISTANCE_MAP_UNIT) uniform sampler2DArray distance_map;
+layout(binding = FARTHEST_UNIT) uniform sampler2D farthest;
 #ifndef BASIS_FORMAT
 #define BASIS_FORMAT rgba8
 #endif
-layout(binding = 0, BASIS_FORMAT) writeonly uniform image2DArray basis;  // 1/2 + 1/2 cos or sin
-layout(binding = 1, rgba16) writeonly uniform image2DArray basis_depth;
-layout(binding = 2, r32f) writeonly uniform image2DArray depth;
+layout(binding = BASIS_IMAGE, BASIS_FORMAT) writeonly uniform image2DArray basis;  // 1/2 + 1/2 cos or sin
+layout(binding = BASIS_DEPTH_IMAGE, rgba16) writeonly uniform image2DArray basis_depth;
+layout(binding = BASIS_MEAN_IMAGE, r32f) writeonly uniform image2DArray depth;
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);

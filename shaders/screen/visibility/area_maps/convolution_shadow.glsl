@@ -1,10 +1,11 @@
 // Convolution soft shadow maps: Annen et al. 2008, in the paraboloid form of Dong et al. 2009, section 4.
 #include "screen/visibility/area_maps/convolution_basis.glsl"
+#include "screen/visibility/area_maps/slots.shared.h"
 
-layout(binding = 8) uniform sampler2DArray shadow_basis;
-layout(binding = 9) uniform sampler2DArray shadow_basis_depth;
-layout(binding = 10) uniform sampler2DArray shadow_depth;
-layout(binding = 11) uniform sampler2D shadow_farthest;
+layout(binding = SHADOW_BASIS_UNIT) uniform sampler2DArray shadow_basis;
+layout(binding = SHADOW_BASIS_DEPTH_UNIT) uniform sampler2DArray shadow_basis_depth;
+layout(binding = SHADOW_DEPTH_UNIT) uniform sampler2DArray shadow_depth;
+layout(binding = SHADOW_FARTHEST_UNIT) uniform sampler2D shadow_farthest;
 uniform bool filter_as_printed;  // ConvolutionShadow::Filter
 
 // Sum over the series' terms for what a filtered texel holds: 2/pi sum (sin z cos d - cos z sin d) / (2k - 1).

@@ -1,8 +1,10 @@
 #version 450 core
 // The farthest that each layer of paraboloid depth maps sees, one group a layer.
+#include "screen/visibility/area_maps/slots.shared.h"
+
 layout(local_size_x = 256) in;
-layout(binding = 0) uniform sampler2DArray distance_map;
-layout(binding = 0, r32f) writeonly uniform image2D farthest;
+layout(binding = DISTANCE_MAP_UNIT) uniform sampler2DArray distance_map;
+layout(binding = FARTHEST_IMAGE, r32f) writeonly uniform image2D farthest;
 
 shared float largest[256];
 

@@ -2,8 +2,9 @@
 // One thread for each triangle and layer: draws the triangle where its bounds hold few texels, else lists the tiles
 // that it may touch for paraboloid_depth_maps_tiles.comp.glsl.
 #include "screen/visibility/area_maps/paraboloid_triangle.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 uniform int first_triangle;
 uniform int triangle_count;
 

@@ -1,6 +1,7 @@
 // A triangle as one layer of paraboloid depth maps sees it. Everything that decides which texels it covers is `precise`
 // and written out: neighbours must find opposite numbers for the edge that they share, or surfaces get holes.
 #include "shared/scene_vertex.shared.h"
+#include "screen/visibility/area_maps/slots.shared.h"
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
 #ifdef ALPHA
 float texture_lod(sampler2D image, int texcoord, mat3 transform);
@@ -8,9 +9,10 @@ float texture_lod(sampler2D image, int texcoord, mat3 transform);
 #include "shared/material.glsl"
 #endif
 
-layout(std430, binding = 0) readonly buffer Vertices { float vertices[]; };
-layout(std430, binding = 1) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
-layout(binding = 0, r32ui) uniform uimage2DArray distance_bits;  // positive floats are ordered as their bits are
+layout(std430, binding = VERTICES_SLOT) readonly buffer Vertices { float vertices[]; };
+layout(std430, binding = MAPPED_AREA_LIGHTS_SLOT) readonly buffer AreaLights { VirtualAreaLight area_lights[]; };
+// Positive floats are ordered as their bits are.
+layout(binding = DISTANCE_BITS_IMAGE, r32ui) uniform uimage2DArray distance_bits;
 uniform int resolution;
 
 #define TILE_TEXELS 16  // edge
@@ -19,7 +21,7 @@ struct TileListHead {
   uint capacity;
 };
 // Tiles of large triangles: triangle, layer | x << 16 | y << 24.
-layout(std430, binding = 2) buffer TileList { TileListHead head; uvec2 tiles[]; };
+layout(std430, binding = MAP_TILES_SLOT) buffer TileList { TileListHead head; uvec2 tiles[]; };
 
 // In the frame of its area light: z along the axis.
 struct LayerTriangle {

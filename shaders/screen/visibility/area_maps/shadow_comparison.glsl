@@ -1,8 +1,9 @@
 // One comparison with a paraboloid depth map.
 #ifndef VOLGI_SHADOW_COMPARISON_GLSL
 #define VOLGI_SHADOW_COMPARISON_GLSL
+#include "screen/visibility/area_maps/slots.shared.h"
 
-layout(binding = 8) uniform sampler2DArray shadow_distance;  // [m]; infinity: nothing there
+layout(binding = SHADOW_DISTANCE_UNIT) uniform sampler2DArray shadow_distance;  // [m]; infinity: nothing there
 
 // Whether what a texel sees, `distance_m` away, hides the receiver. It does when it lies on the light's side of the
 // receiver's plane: points of that plane fail whatever the texel's size and the angle, so that no bias grows with them.

@@ -4,8 +4,9 @@
 #include "shared/constants.glsl"
 #include "shared/global_index.shared.h"
 #include "screen/visibility/area_maps/virtual_area_lights.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;  // kListStep
+layout(local_size_x = LINEAR_GROUP) in;
 uniform float weight_per_m;
 uniform float weight_per_rad;
 

@@ -5,8 +5,8 @@
 
 #define THREADS 64
 layout(local_size_x = THREADS) in;
-layout(std430, binding = 4) writeonly buffer AreaLights { VirtualAreaLight area_lights[]; };
-layout(std430, binding = 5) writeonly buffer Order { uint order[]; };
+layout(std430, binding = MADE_AREA_LIGHTS_SLOT) writeonly buffer AreaLights { VirtualAreaLight area_lights[]; };
+layout(std430, binding = MADE_ORDER_SLOT) writeonly buffer Order { uint order[]; };
 uniform int cluster_count;
 shared ivec2 before[THREADS];
 

@@ -4,8 +4,8 @@
 #include "screen/visibility/area_maps/virtual_area_lights.glsl"
 #include "screen/visibility/area_maps/virtual_area_lights_reduce.glsl"
 
-layout(std430, binding = 4) buffer AreaLights { VirtualAreaLight area_lights[]; };
-layout(std430, binding = 5) readonly buffer Order { uint order[]; };
+layout(std430, binding = MADE_AREA_LIGHTS_SLOT) buffer AreaLights { VirtualAreaLight area_lights[]; };
+layout(std430, binding = MADE_ORDER_SLOT) readonly buffer Order { uint order[]; };
 
 uniform bool at_mean;  // VirtualAreaLightOptions::position
 

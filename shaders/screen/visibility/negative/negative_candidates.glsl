@@ -2,18 +2,19 @@
 // volume. Each has the flux that passes through it as its weight.
 #ifndef VOLGI_NEGATIVE_CANDIDATES_GLSL
 #define VOLGI_NEGATIVE_CANDIDATES_GLSL
+#include "screen/visibility/negative/negative_candidates.shared.h"
+#include "screen/visibility/negative/slots.shared.h"
 
-layout(std430, binding = 2) buffer Weights { float weights[]; };  // flux [W]; then summed from the first on
+// Flux [W]; then summed from the first on.
+layout(std430, binding = PASSED_FLUX_SLOT) buffer Weights { float weights[]; };
 
 #ifdef SIDES
 #include "screen/visibility/negative/sides_by_block.glsl"
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
-layout(std430, binding = 5) readonly buffer SideCount { uint side_count; };
+#include "voxel/side_count.glsl"
+#include "voxel/sides.glsl"
 
 int candidate_count() { return min(int(side_count), min(sides.length(), weights.length())); }
 #else
-#define CANDIDATES_X 64
-#define CANDIDATES_Y 64
 int candidate_count() { return CANDIDATES_X * CANDIDATES_Y; }
 #endif
 

@@ -7,9 +7,10 @@
 #include "screen/visibility/negative/first_passage.glsl"
 #endif
 #include "screen/visibility/negative/negative_light.shared.h"
+#include "screen/visibility/negative/slots.shared.h"
 
 layout(local_size_x = 64) in;
-layout(std430, binding = 1) writeonly buffer Negative { NegativeLight negative_lights[]; };
+layout(std430, binding = PLACED_LIGHTS_SLOT) writeonly buffer Negative { NegativeLight negative_lights[]; };
 uniform int negative_count;
 
 shared vec3 irradiance_part[64];

@@ -2,8 +2,9 @@
 // Flux that passes through each candidate [W], luminance.
 #include "shared/global_index.shared.h"
 #include "screen/visibility/negative/negative_surface.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 
 void main() {
   int candidate = int(global_index());

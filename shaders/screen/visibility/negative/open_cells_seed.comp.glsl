@@ -2,13 +2,13 @@
 // The cell in front of each virtual light is open, unless it may lie behind a surface: in a corner or on a slope the
 // cell's centre, which decides, can be on the other side, and one such cell would open all that is closed. Light has
 // more than one virtual light.
+#include "screen/base/virtual_lights.glsl"
 #include "shared/global_index.shared.h"
 #include "screen/visibility/negative/open_cells.glsl"
-#include "shared/virtual_light.shared.h"
+#include "shared/group_sizes.shared.h"
+#include "voxel/sides.glsl"
 
-layout(local_size_x = 64) in;
-layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
-layout(std430, binding = 4) readonly buffer Sides { Side sides[]; };
+layout(local_size_x = LINEAR_GROUP) in;
 uniform int light_count;
 
 #define MIN_CELLS 0.02  // a light is this far in front of surfaces other than its own; depths err by far less

@@ -3,8 +3,9 @@
 // column.
 #include "shared/global_index.shared.h"
 #include "screen/visibility/negative/open_cells.glsl"
+#include "shared/group_sizes.shared.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LINEAR_GROUP) in;
 uniform int axis;
 
 void main() {

@@ -4,11 +4,10 @@
 #include "shared/constants.glsl"
 #include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
+#include "screen/base/virtual_lights.glsl"
 #include "shared/luminance.glsl"
 #include "shared/octahedral.glsl"
-#include "shared/virtual_light.shared.h"
 
-layout(std430, binding = 0) readonly buffer Lights { VirtualLight lights[]; };
 uniform int light_count;
 uniform vec4 viewer;  // position and 1, or the direction towards an orthographic camera and 0
 uniform vec3 view_axis;

@@ -3,14 +3,16 @@
 // moves. (Rows of cells, the order of the volume's own list, are near in one direction only.)
 #ifndef VOLGI_SIDES_BY_BLOCK_GLSL
 #define VOLGI_SIDES_BY_BLOCK_GLSL
+#include "screen/visibility/negative/negative_candidates.shared.h"
 #include "screen/visibility/negative/open_cells.glsl"
+#include "screen/visibility/negative/slots.shared.h"
 
-#define BLOCK_EDGE 8
 #define BLOCK_ROWS (BLOCK_EDGE * BLOCK_EDGE)  // of cells along x
 
-layout(std430, binding = 7) buffer SidesByBlock { uint sides_by_block[]; };
+layout(std430, binding = SIDES_BY_BLOCK_SLOT) buffer SidesByBlock { uint sides_by_block[]; };
 #ifdef WRITES_LIST
-layout(std430, binding = 2) buffer BlockStarts { uint block_starts[]; };  // counts first, then where each block begins
+// Counts first, then where each block begins.
+layout(std430, binding = BLOCK_STARTS_SLOT) buffer BlockStarts { uint block_starts[]; };
 #endif
 
 ivec3 blocks_of_grid() { return (grid.cells + BLOCK_EDGE - 1) / BLOCK_EDGE; }

@@ -2,6 +2,9 @@
 // nothing stops any.
 #include "core/halton.h"
 #include "core/visibility/embree_scene.h"
+#include "shaders/screen/base/slots.shared.h"
+#include "shaders/screen/visibility/negative/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 #include "tests/screen/gathered.h"
 #include "tests/screen/virtual_light_scenes.h"
 #include "tests/support/disk_to_point.h"
@@ -259,17 +262,17 @@ std::vector<std::uint32_t> open_cells(const VoxelGridGl& voxels, const VirtualLi
   const gl::Buffer open(cell_count(voxels.grid) * sizeof(GLuint));
   open.clear();
   voxels.bind();
-  lights.buffer.bind_storage(0);
-  open.bind_storage(6);
+  lights.buffer.bind_storage(VIRTUAL_LIGHTS_SLOT);
+  open.bind_storage(OPEN_CELLS_SLOT);
   seed.use();
   seed.set("light_count", lights.reflected);
-  gl::dispatch_linear(size_t(lights.reflected), 64);
+  gl::dispatch_linear(size_t(lights.reflected), LINEAR_GROUP);
   spread.use();
   for (int i = 0; i < 3 * rounds; ++i) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     spread.set("axis", i % 3);
     const glm::ivec3 cells = voxels.grid.cells;
-    gl::dispatch_linear(size_t(cells.x * cells.y * cells.z / cells[i % 3]), 64);
+    gl::dispatch_linear(size_t(cells.x * cells.y * cells.z / cells[i % 3]), LINEAR_GROUP);
   }
   return open.download<std::uint32_t>(cell_count(voxels.grid));
 }

@@ -1,0 +1,15 @@
+// Beside what VoxelGridGl::bind() and GBuffer::bind() bind.
+#ifndef VOLGI_VOLUME_SLOTS_SHARED_H
+#define VOLGI_VOLUME_SLOTS_SHARED_H
+#include "screen/base/gbuffer.shared.h"
+
+// The side gather.
+#define GATHERED_EMITTED_SLOT 6
+#define GATHERED_PUNCTUAL_SLOT 7
+#define SIDE_SUBLIGHTS_SLOT 8
+
+// The radiance gather.
+#define RADIANCE_UNIT GBUFFER_UNITS
+#define OCCUPANCY_UNIT (GBUFFER_UNITS + 1)
+
+#endif

@@ -1,0 +1,16 @@
+#ifndef VOLGI_RESAMPLE_SLOTS_SHARED_H
+#define VOLGI_RESAMPLE_SLOTS_SHARED_H
+
+#define CANDIDATES_SLOT 0
+#define RECEIVERS_SLOT 1
+#define CANDIDATE_WEIGHTS_SLOT 2
+#define CHOSEN_LIGHTS_SLOT 3
+#define CHOSEN_RANGES_SLOT 4
+
+// Subdivision: beside those of screen/lights/rsm/slots.shared.h.
+#define DIVIDED_CANDIDATES_SLOT 5
+#define DIVIDED_RANGES_SLOT 6
+#define MADE_SUBLIGHTS_SLOT 7
+#define MADE_NEAR_LIGHTS_SLOT 8
+
+#endif
