@@ -59,14 +59,16 @@ std::vector<GatheredLight> lights_of(const VirtualLightList& list, const Scene& 
 // upright one that is turned to the axis (B-14), in the shares of the point's own normal. The point is `height` over
 // the disk's plane; the disk's middle is `along` over the point's horizon.
 double disk_to_point(double height, double along, double facing, double squared, double area_m2) {
-  const double r2 = area_m2 / kPi;
+  const double r2 = area_m2 / kPi, lift = std::min(height, along);
+  const double apart =
+      std::clamp(1e6 * lift * lift / std::max(r2, 1e-300) - 1.0, 0.0, 1.0);  // 0: both lie in one plane
   if (r2 < 1e-9 * squared) return height * along / (kPi * squared * squared);
   const double across = 2.0 * std::sqrt(r2 * std::max(squared - height * height, 0.0)), sum = squared + r2;
   const double root = std::sqrt(std::max((sum - across) * (sum + across), 0.0));
   if (!(root > 0.0)) return 0.5 * std::max(facing, 0.0) / area_m2;  // on the rim
   const double parallel = 0.5 * (1.0 - (squared - r2) / root);
   const double upright = 2.0 * height * r2 / (root * (sum + root));  // over the distance from the axis
-  return std::clamp(facing * parallel + (along - facing * height) * upright, 0.0, 1.0) / area_m2;
+  return apart * std::clamp(facing * parallel + (along - facing * height) * upright, 0.0, 1.0) / area_m2;
 }
 
 // Irradiance at the vertex per unit of flux, as if nothing were in between.

@@ -139,10 +139,6 @@ Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths 
 void check_layers(const Plan::Step& step, std::span<const RadianceLayer> layers) {
   LightPaths seen[3];
   for (const RadianceLayer& layer : layers) {
-    if (layer.paths.meets(DIRECT_PATHS) && layer.paths.meets(INDIRECT_PATHS)) {
-      throw Error(ExitCode::usage, fmt::format("stage {}: direct and indirect light in one layer: {}", step.type->name,
-                                               in_words(layer.paths)));
-    }
     LightPaths of_share;
     for (const StageRole::Light& light : step.adds) {
       if (light.share == layer.share) of_share = of_share | light.paths;

@@ -31,8 +31,7 @@ LightPaths paths_in(const Scene& scene);
 ///   no stage before it makes; where slots are out of order.
 Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths present);
 
-/// @throws Error(usage) when `layers`, as the stage added them, are not what its role says, or one of them holds
-///   direct and indirect light.
+/// @throws Error(usage) when `layers`, as the stage added them, are not what its role says.
 void check_layers(const Plan::Step& step, std::span<const RadianceLayer> layers);
 
 }  // namespace volgi::screen

@@ -8,6 +8,8 @@ SHARED_BEGIN
 // factors of a point whose surface is parallel to the disk, and upright to it and turned to its axis (Howell, B-13 and
 // B-14), with what cancels in them multiplied out. Nichols' form (2010, eq. 4.1) is the first of them on the axis; in
 // a corner, where light leaves at grazing angles, it loses up to twice A / (pi d^2), however many lights there are.
+// Nothing where the two lie in one plane, to a thousandth of the disk's radius: else a sheet's front would light its
+// back, as positions are rounded.
 // @param height   of the point over the disk's plane [m], >= 0.
 // @param along    of the disk's middle over the point's horizon [m], > 0.
 // @param facing   cosine between the disk's normal and the point's turned round.
@@ -21,7 +23,10 @@ SHARED_FUNCTION float disk_to_point(float height, float along, float facing, flo
   float parallel =
       beyond > 0.0f ? 2.0f * height * height / (root + beyond) : 0.5f * (root - beyond) / max(radius_squared, 1e-30f);
   float upright = 2.0f * height * (along - facing * height) / (root + sum);
-  return clamp((facing * parallel + upright) / (pi * root), 0.0f, 1.0f / max(area_m2, 1e-30f));
+  float lift = min(height, along);
+  float in_plane = 1e-6f * radius_squared + 1e-30f;
+  float apart = clamp(lift * lift / in_plane - 1.0f, 0.0f, 1.0f);
+  return apart * clamp((facing * parallel + upright) / (pi * root), 0.0f, 1.0f / max(area_m2, 1e-30f));
 }
 
 // The same to second order in the disk's radius: it errs by 1.5 % at most where `squared` is DISK_FAR_AREAS areas, and by

@@ -42,6 +42,27 @@ TEST(DiskToPoint, IsTheIntegralOverTheDisk) {
 }
 
 /// A wall sees grazing light, of which Nichols' form loses twice A / (pi d^2) to second order.
+/// As disk_to_point(), from points that a horizon leaves all of the disk: as much as the header says.
+TEST(DiskToPoint, FromAfar) {
+  for (const auto& [areas, limit] : {std::pair(double(DISK_FAR_AREAS), 0.015), {2.0 * double(DISK_FAR_AREAS), 0.005}}) {
+    const double radius = std::sqrt(1.0 / areas / glm::pi<double>());
+    double worst = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      const glm::dvec3 n = glm::normalize(glm::dvec3(std::sin(17.0 * i), std::cos(5.0 * i), std::sin(3.0 * i + 1.0)));
+      const glm::dvec3 x =
+          glm::normalize(glm::dvec3(std::cos(i), 0.01 + std::abs(std::sin(7.0 * i)), std::sin(2.0 * i)));
+      const double along = -glm::dot(x, n);
+      if (along < radius) continue;
+      const double near = found({"", x, n}, 1.0 / areas);
+      const double far =
+          double(shared::disk_to_point_from_afar(float(x.y), float(along), float(-n.y), 1.0f, float(1.0 / areas)));
+      worst = std::max(worst, std::abs(far / near - 1.0));
+    }
+    EXPECT_LT(worst, limit) << areas;
+    EXPECT_GT(worst, 0.5 * limit) << areas;
+  }
+}
+
 TEST(DiskToPoint, InACornerMoreThanOnTheAxis) {
   const Place wall{"low on a wall", {1, 0.05, 0}, {-1, 0, 0}};
   const double area_m2 = 0.1, squared = glm::dot(wall.x, wall.x);
@@ -54,11 +75,12 @@ TEST(DiskToPoint, InACornerMoreThanOnTheAxis) {
 /// All of a large disk's flux arrives where a point touches its middle, and nothing on the horizon or behind it.
 TEST(DiskToPoint, IsBounded) {
   for (const double area_m2 : {1e-4, 1.0, 1e4}) {
-    for (const double height : {1e-7, 1e-4, 1e-2}) {
-      const double scale = std::sqrt(area_m2);
-      const Place above{"", {0, height * scale, 0}, {0, -1, 0}};
-      EXPECT_NEAR(found(above, area_m2) * area_m2, 1.0, 1e-2 + 1e-3 / height * 1e-5) << area_m2 << " " << height;
+    const double radius = std::sqrt(area_m2 / glm::pi<double>());
+    for (const double height : {2e-3, 1e-2, 0.1}) {
+      const Place above{"", {0, height * radius, 0}, {0, -1, 0}};
+      EXPECT_NEAR(found(above, area_m2) * area_m2, 1.0 / (1.0 + height * height), 1e-4) << area_m2 << " " << height;
     }
+    EXPECT_EQ(found({"the other side of a sheet", {0.3 * radius, 0.9e-3 * radius, 0}, {0, -1, 0}}, area_m2), 0.0);
     for (int i = 0; i < 2000; ++i) {
       const double t = i / 2000.0, far = std::sqrt(area_m2) * std::pow(10.0, 6.0 * t - 4.0);
       const glm::dvec3 n = glm::normalize(glm::dvec3(std::sin(17.0 * i), std::cos(5.0 * i), std::sin(3.0 * i + 1.0)));

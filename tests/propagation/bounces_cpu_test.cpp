@@ -26,9 +26,9 @@ double power_error(const Powers& a, const Powers& b) {
 }
 
 /// A box of sides that differ in everything, and a random exchange of power between them.
-class BouncesCpu : public ::testing::Test {
+class BouncesCpuTest : public ::testing::Test {
  protected:
-  BouncesCpu() : voxels_(make_voxels()), s_(random_exchange(voxels_, 5)) {
+  BouncesCpuTest() : voxels_(make_voxels()), s_(random_exchange(voxels_, 5)) {
     rules_.largest_albedo = 0.9f;
     std::mt19937 random(7);
     std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
@@ -121,7 +121,7 @@ class BouncesCpu : public ::testing::Test {
   static constexpr int kAll = 400;
 };
 
-TEST_F(BouncesCpu, PartialSums) {
+TEST_F(BouncesCpuTest, PartialSums) {
   for (bool emission : {false, true}) {
     for (int n : {0, 1, 2, 7}) {
       rules_.bounces = n;
@@ -136,7 +136,7 @@ TEST_F(BouncesCpu, PartialSums) {
   }
 }
 
-TEST_F(BouncesCpu, BothSolversEndWithinTheTolerance) {
+TEST_F(BouncesCpuTest, BothSolversEndWithinTheTolerance) {
   for (bool emission : {false, true}) {
     const Answer exact = series(flux_, emission, kAll);
     int passes[2];
@@ -161,7 +161,7 @@ TEST_F(BouncesCpu, BothSolversEndWithinTheTolerance) {
 }
 
 // P <- K(e + fP) from black ends when the series does: the same sums, and what is left is what would be sent next.
-TEST_F(BouncesCpu, RenewalsEndAsOrdersDo) {
+TEST_F(BouncesCpuTest, RenewalsEndAsOrdersDo) {
   rules_.solver = Solver::plain;
   BouncesCpu one_by_one = matrix(), renewed = matrix();
   const BounceReport a = one_by_one.run(voxels_, flux_, true, rules_);
@@ -173,7 +173,7 @@ TEST_F(BouncesCpu, RenewalsEndAsOrdersDo) {
 }
 
 // All that is sent ends on sides, or is left.
-TEST_F(BouncesCpu, ReportsPowerSent) {
+TEST_F(BouncesCpuTest, ReportsPowerSent) {
   for (Solver solver : {Solver::plain, Solver::conjugate_gradients}) {
     rules_.solver = solver;
     BouncesCpu bounces = matrix();
@@ -186,7 +186,7 @@ TEST_F(BouncesCpu, ReportsPowerSent) {
   }
 }
 
-TEST_F(BouncesCpu, ScalesWithTheLight) {
+TEST_F(BouncesCpuTest, ScalesWithTheLight) {
   BouncesCpu bounces = matrix();
   bounces.run(voxels_, flux_, true, rules_);
   for (float scale : {1e-12f, 1e12f}) {
@@ -197,7 +197,7 @@ TEST_F(BouncesCpu, ScalesWithTheLight) {
   }
 }
 
-TEST_F(BouncesCpu, WarmStartReachesTheSameAnswerSooner) {
+TEST_F(BouncesCpuTest, WarmStartReachesTheSameAnswerSooner) {
   for (Solver solver : {Solver::plain, Solver::automatic}) {
     rules_.solver = solver;
     rules_.warm_start = true;
@@ -223,7 +223,7 @@ TEST_F(BouncesCpu, WarmStartReachesTheSameAnswerSooner) {
   }
 }
 
-TEST_F(BouncesCpu, NoDriftInAStaticScene) {
+TEST_F(BouncesCpuTest, NoDriftInAStaticScene) {
   const Answer exact = series(flux_, true, kAll);
   for (Solver solver : {Solver::plain, Solver::automatic}) {
     rules_.solver = solver;
@@ -238,7 +238,7 @@ TEST_F(BouncesCpu, NoDriftInAStaticScene) {
   }
 }
 
-TEST_F(BouncesCpu, WarmStartNeedsAsManySides) {
+TEST_F(BouncesCpuTest, WarmStartNeedsAsManySides) {
   rules_.warm_start = true;
   BouncesCpu bounces = matrix();
   const BounceReport cold = bounces.run(voxels_, flux_, false, rules_);
@@ -261,7 +261,7 @@ int runs_until_near(BouncesCpu& bounces, const VoxelGrid& voxels, const SideFlux
   return near + 1;
 }
 
-TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
+TEST_F(BouncesCpuTest, AmortisedOrdersFollowALightStep) {
   const SideFlux half = dimmed(glm::vec3(0.5f));
   const Answer full = series(flux_, true, kAll), dim = series(half, true, kAll);
   for (int passes : {1, 3}) {
@@ -280,7 +280,7 @@ TEST_F(BouncesCpu, AmortisedOrdersFollowALightStep) {
   }
 }
 
-TEST_F(BouncesCpu, AmortisedPulseGoesOnInTheNextRun) {
+TEST_F(BouncesCpuTest, AmortisedPulseGoesOnInTheNextRun) {
   rules_.passes_per_run = 4;
   const Answer exact = series(flux_, false, kAll);
   BouncesCpu bounces = pulse();
@@ -301,7 +301,7 @@ TEST_F(BouncesCpu, AmortisedPulseGoesOnInTheNextRun) {
   EXPECT_LE(power_error(bounces.received_indirect(), exact.indirect), double(BounceRules::kTolerance));
 }
 
-TEST_F(BouncesCpu, PulsesTakeOrdersAndWarmStarts) {
+TEST_F(BouncesCpuTest, PulsesTakeOrdersAndWarmStarts) {
   const Answer exact = series(flux_, true, kAll);
   BouncesCpu bounces = pulse();
   const BounceReport cold = bounces.run(voxels_, flux_, true, rules_);
@@ -314,7 +314,7 @@ TEST_F(BouncesCpu, PulsesTakeOrdersAndWarmStarts) {
   EXPECT_LE(power_error(bounces.received_indirect(), exact.indirect), 3.0 * double(BounceRules::kTolerance));
 }
 
-TEST_F(BouncesCpu, SameBytesWithAnyNumberOfThreads) {
+TEST_F(BouncesCpuTest, SameBytesWithAnyNumberOfThreads) {
   Powers answers[2];
   for (int threads : {1, 2}) {
     oneapi::tbb::task_arena arena(threads);
@@ -327,7 +327,7 @@ TEST_F(BouncesCpu, SameBytesWithAnyNumberOfThreads) {
   EXPECT_EQ(answers[0], answers[1]);
 }
 
-TEST_F(BouncesCpu, RefusesWhatMakesNoSense) {
+TEST_F(BouncesCpuTest, RefusesWhatMakesNoSense) {
   const auto refused = [&](BouncesCpu bounces, const BounceRules& rules) {
     try {
       bounces.run(voxels_, flux_, false, rules);

@@ -32,12 +32,14 @@ inline double disk_to_point_summed(glm::dvec3 x, glm::dvec3 n, glm::dvec3 middle
 inline double disk_to_point_exact(glm::dvec3 x, glm::dvec3 n, glm::dvec3 middle, glm::dvec3 normal, double area_m2) {
   const glm::dvec3 w = middle - x;
   const double h = -glm::dot(w, normal), r2 = area_m2 / glm::pi<double>();
-  if (!(h > 0.0) || !(glm::dot(w, n) > 0.0)) return 0.0;
+  const double lift = std::min(h, glm::dot(w, n));
+  if (!(lift > 0.0)) return 0.0;
+  const double apart = std::clamp(1e6 * lift * lift / r2 - 1.0, 0.0, 1.0);  // 0: both lie in one plane
   const double a = std::sqrt(std::max(glm::dot(w, w) - h * h, 1e-18));
   const double z = h * h + a * a + r2, root = std::sqrt(z * z - 4.0 * a * a * r2);
   const double parallel = 0.5 * (1.0 - (h * h + a * a - r2) / root), upright = 0.5 * h / a * (z / root - 1.0);
   const double facing = -glm::dot(n, normal);
-  return std::max(facing * parallel + (glm::dot(w, n) - facing * h) / a * upright, 0.0) / area_m2;
+  return apart * std::max(facing * parallel + (glm::dot(w, n) - facing * h) / a * upright, 0.0) / area_m2;
 }
 
 }  // namespace volgi::test

@@ -50,8 +50,12 @@ void ConvolutionShadow::run(const ParaboloidDepthMaps& maps, gl::PassTimer& time
   for (const gl::Texture* t : {&basis_, &basis_depth_, &depth_}) glGenerateTextureMipmap(t->id());
 }
 
-void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program& program) const {
-  program.set("filter_as_printed", int(filter_ == Filter::printed));
+std::string ConvolutionShadow::define() const {
+  return filter_ == Filter::printed ? "AREA_LIGHT_SHADOW_CONVOLUTION FILTER_AS_PRINTED"
+                                    : "AREA_LIGHT_SHADOW_CONVOLUTION FILTER_OF_MAP";
+}
+
+void ConvolutionShadow::bind(const ParaboloidDepthMaps&, const gl::Program&) const {
   basis_.bind(SHADOW_BASIS_UNIT);
   basis_depth_.bind(SHADOW_BASIS_DEPTH_UNIT);
   depth_.bind(SHADOW_DEPTH_UNIT);

@@ -16,7 +16,7 @@ class ConvolutionShadow final : public AreaLightShadow {
   ConvolutionShadow(int resolution, int layers, Filter filter = Filter::map, BasisFormat format = BasisFormat::rgba8);
 
   void run(const ParaboloidDepthMaps& maps, gl::PassTimer& timer) override;
-  std::string define() const override { return "AREA_LIGHT_SHADOW_CONVOLUTION"; }
+  std::string define() const override;
   void bind(const ParaboloidDepthMaps& maps, const gl::Program& program) const override;
   size_t bytes() const override;
 

@@ -6,7 +6,10 @@ layout(binding = SHADOW_BASIS_UNIT) uniform sampler2DArray shadow_basis;
 layout(binding = SHADOW_BASIS_DEPTH_UNIT) uniform sampler2DArray shadow_basis_depth;
 layout(binding = SHADOW_DEPTH_UNIT) uniform sampler2DArray shadow_depth;
 layout(binding = SHADOW_FARTHEST_UNIT) uniform sampler2D shadow_farthest;
-uniform bool filter_as_printed;  // ConvolutionShadow::Filter
+
+// Values of AREA_LIGHT_SHADOW_CONVOLUTION: AreaLightShadow::Filter.
+#define FILTER_OF_MAP 0
+#define FILTER_AS_PRINTED 1
 
 // Sum over the series' terms for what a filtered texel holds: 2/pi sum (sin z cos d - cos z sin d) / (2k - 1).
 float step_sum(sampler2DArray images, vec2 uv, int layer, float level, float d) {
@@ -38,7 +41,8 @@ float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
   vec2 uv = disk * 0.5 + 0.5;
   float texel = texel_angle(disk, resolution);
   // Of the map's whole width: the map's own scale here, or Dong's w = alpha/pi everywhere.
-  float width_per_angle = filter_as_printed ? 1.0 / PI : 1.0 / (texel * float(resolution));
+  const bool as_printed = AREA_LIGHT_SHADOW_CONVOLUTION == FILTER_AS_PRINTED;
+  float width_per_angle = as_printed ? 1.0 / PI : 1.0 / (texel * float(resolution));
 
   // The first filter: the angle that the light is seen under.
   float angle = max(atan(light.size_m / receiver_m), texel);

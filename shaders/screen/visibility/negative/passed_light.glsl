@@ -2,7 +2,6 @@
 #ifndef VOLGI_PASSED_LIGHT_GLSL
 #define VOLGI_PASSED_LIGHT_GLSL
 #include "shared/constants.glsl"
-#include "shared/disk_to_point.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "screen/base/virtual_lights.glsl"
 #include "shared/luminance.glsl"
@@ -29,7 +28,9 @@ void add_passed_light(int light, vec3 position, vec3 normal, inout PassedLight s
   // The cosine at the surface is the negated one: light arrives from behind.
   float cosine_here = dot(way, normal), cosine_there = dot(way, l.normal);
   if (min(cosine_here, cosine_there) <= MIN_COSINE * distance) return;
-  vec3 irradiance = l.flux * disk_to_point(cosine_there, cosine_here, dot(normal, l.normal), squared, l.area_m2);
+  // Nichols' form (2010, eq. 4.1), which falls to nothing towards the light's plane: the exact one would take light from
+  // sides whose rounded depths put them just behind it.
+  vec3 irradiance = l.flux * (cosine_here * cosine_there / (squared * (PI * squared + l.area_m2)));
   sum.irradiance += irradiance;
   sum.direction += luminance(irradiance) * way / distance;
 }

@@ -7,7 +7,6 @@
 #include "shaders/shared/group_sizes.shared.h"
 #include "tests/screen/gathered.h"
 #include "tests/screen/virtual_light_scenes.h"
-#include "tests/support/disk_to_point.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/voxels.h"
 #include "voxel/voxelize_cpu.h"
@@ -236,8 +235,8 @@ TEST_F(NegativeLightsTest, ThePapersStandOnPixelsOfTheHaltonSequence) {
     for (const VirtualLight& l : lights) {
       const glm::dvec3 way = glm::dvec3(placed.seen.position[i]) - glm::dvec3(l.position);
       const double d = glm::length(way);
-      const glm::dvec3 e = glm::dvec3(l.flux) * disk_to_point_exact(placed.seen.position[i], {0, 0, -1}, l.position,
-                                                                    l.normal, double(l.area_m2));
+      const glm::dvec3 e = glm::dvec3(l.flux) * (way.z / d * glm::dot(way, glm::dvec3(l.normal)) / d /
+                                                 (glm::pi<double>() * d * d + double(l.area_m2)));
       irradiance += e;
       direction += glm::dot(e, glm::dvec3(0.2126, 0.7152, 0.0722)) / d * way;
     }
