@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Case{"cornell", Gi("volume"), Scheme::ordinates, 16, {1.0, 1.0, 1.0}},
                     Case{"cornell", Gi("volume"), Scheme::conservative, 16, {1.0, 1.0, 1.0}, TestedOn::not_in_software},
                     Case{"room", Gi("volume"), Scheme::ordinates, 21, {2.0, 1.0, 1.0}, TestedOn::not_in_software},
-                    Case{"cornell", Gi("vpl"), Scheme::ordinates, 16, {1.0, 2.6, 1.0}, TestedOn::gpu_only},
+                    Case{"cornell", Gi("vpl"), Scheme::ordinates, 16, {1.1, 3.0, 1.0}, TestedOn::gpu_only},
                     Case{"cornell", Gi("val"), Scheme::ordinates, 16, {1.0, 7.6, 1.0}, TestedOn::gpu_only},
                     Case{"cornell", Gi("hybrid"), Scheme::ordinates, 16, {1.0, 5.6, 1.0}}),
     [](const auto& test) { return test.param.name(); });
