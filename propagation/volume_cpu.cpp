@@ -13,6 +13,7 @@
 #include "propagation/transport_conservative_cpu.h"
 #include "propagation/transport_ordinates_cpu.h"
 #include "voxel/voxelize_cpu.h"
+#include "voxel/white_pockets.h"
 
 namespace volgi {
 
@@ -94,7 +95,9 @@ bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
+  const bool white = may_have_white_pockets(rules_.largest_albedo);
   VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
+  if (white) pocket_cells_ = bound_white_pockets(fresh);
   const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
@@ -104,6 +107,7 @@ void VolumeCpu::voxelize() {
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
+  if (coarse && white) bound_white_pockets(half_voxels_);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);

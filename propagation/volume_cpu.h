@@ -40,6 +40,7 @@ class VolumeCpu {
   /// and 1 ... n of emission, `direct` nothing.
   const SideIrradiance& irradiance() const { return irradiance_; }
   const BounceReport& report() const { return report_; }
+  size_t pocket_cells() const { return pocket_cells_; }  // bound_white_pockets()
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
   RadianceVolume radiance();
   /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
@@ -59,6 +60,7 @@ class VolumeCpu {
   std::unique_ptr<PulseVolumeCpu> pulse_;
   SideIrradiance irradiance_;
   BounceReport report_;
+  size_t pocket_cells_ = 0;
   bool moved_ = false;  // since the last voxelization
 };
 

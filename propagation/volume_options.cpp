@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/log.h"
+#include "shaders/voxel/white_pockets.shared.h"
 
 namespace volgi {
 
@@ -41,6 +43,25 @@ void refuse_on_cpu(const VolumeOptions& o) {
   if (o.voxelization.method != VoxelizationMethod::sliced || o.voxelization.interleave)
     throw Error(ExitCode::usage,
                 "voxel.method=single_pass, voxel.interleave=1: the CPU slices along three axes; use --backend gpu");
+}
+
+void warn_of_answer(const std::string& scene, const VolumeOptions& o, const BounceReport& report, size_t pocket_cells,
+                    size_t cells) {
+  const bool all_asked = !o.bounces && !o.iterations && !o.passes_per_run && carries_sides(o.scheme.scheme);
+  if (all_asked && !report.converged) {
+    const auto most = [](glm::vec3 v) { return double(std::max({v.x, v.y, v.z})); };
+    warn_once(
+        fmt::format("{}: the volume's bounces have not come to their end after {} orders, {:.3g} W of {:.3g} W are "
+                    "left: the picture is not right; --set solver=plain or --bounces N may do better",
+                    scene, report.orders, most(report.left), most(report.sent)));
+  }
+  constexpr size_t LARGE = 20;  // a twentieth of all cells is a room
+  if (pocket_cells * LARGE > cells) {
+    warn_once(
+        fmt::format("{}: a closed place whose surfaces all reflect {:g} or more keeps its light for ever; its "
+                    "albedo counts as {:g} in the volume",
+                    scene, double(WHITE_ALBEDO), double(MAX_POCKET_ALBEDO)));
+  }
 }
 
 void refuse_above_limit(const VolumeOptions& o, size_t expected, const char* where) {

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
 
 #include "propagation/bounce_rules.h"
 #include "propagation/scheme.h"
@@ -43,5 +44,11 @@ void refuse_on_cpu(const VolumeOptions& options);
 /// @throws Error(over_limit) naming both figures when `expected` exceeds options.memory_limit. @param where  "CPU",
 /// "GPU".
 void refuse_above_limit(const VolumeOptions& options, size_t expected, const char* where);
+
+/// Says on stderr what is wrong with a finished answer: bounces that have not come to their end although all were asked
+/// for, and a closed place of white surfaces that is more than a pocket (voxel/white_pockets.h).
+/// @param pocket_cells  of the grid's `cells`.
+void warn_of_answer(const std::string& scene, const VolumeOptions& options, const BounceReport& report,
+                    size_t pocket_cells, size_t cells);
 
 }  // namespace volgi

@@ -125,6 +125,8 @@ int ExportCommand::run() const {
     computed.propagate();
     progress.advance();
   }
+  if (has_radiance())
+    warn_of_answer(scene.name, options, computed.report(), computed.pocket_cells(), cell_count(computed.grid()));
   ExportGrids grids(world_from_index(computed.grid(), scene.world_origin));
   grids.add_cells(computed.cells());
   if (has_radiance()) grids.add_radiance(computed.radiance());

@@ -36,6 +36,8 @@
 #define AREA_ENTRIES_SLOT 1
 #define AREA_SURFACES_SLOT 2
 
+#define LEAVING_SLOT 0  // white_pockets
+
 #define CELL_SUMS_SLOT 0  // the first
 #define NORMAL_OCCUPANCY_IMAGE 0
 #define CELL_ALBEDO_IMAGE 1

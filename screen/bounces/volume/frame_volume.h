@@ -16,6 +16,7 @@ struct VolumeReport {
   bool coarse_start = false;  // SchemeOptions::coarse_start, as it was
   glm::ivec3 grid{0};
   size_t sides = 0;
+  size_t pocket_cells = 0;  // voxel/white_pockets.h
   BounceReport bounces;
   glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
   glm::vec3 lost{0.0f};      // and what found no side, or looks out of the grid at its rim [W]

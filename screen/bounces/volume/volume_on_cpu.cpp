@@ -91,6 +91,7 @@ VolumeReport report_of(const VolumeCpu& volume) {
   r.sides = volume.voxels().side_count();
   r.coarse_start = volume.has_coarse_part();
   r.bounces = volume.report();
+  r.pocket_cells = volume.pocket_cells();
   r.lost = volume.flux().lost;
   for (const auto* flux : {&volume.flux().emitted, &volume.flux().punctual}) {
     for (const glm::vec4& f : *flux) r.injected += glm::vec3(f);

@@ -12,6 +12,8 @@
 #include "voxel/cell_volumes_gl.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/sliced_voxelization.h"
+#include "voxel/white_pockets.h"
+#include "voxel/white_pockets_gl.h"
 
 namespace volgi::screen {
 
@@ -29,19 +31,21 @@ class LitVoxels {
       : scene_(scene),
         options_(options),
         voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells), options.voxelization),
-        emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {}
+        emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {
+    follow_albedo();
+  }
 
   /// @param emission_apart  SideFluxGl::inject_emitters.
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, bool emission_apart,
            gl::PassTimer& timer) {
-    voxelization_.run(buffers, timer);
+    voxelize(buffers, timer);
     flux_.begin(voxels());
     flux_.inject_emitters(voxels(), emitters_, timer, emission_apart);
     inject_.run(voxels(), maps, scene_, flux_, timer);
   }
   /// The first bounce in, instead of light.
   void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
-    voxelization_.run(buffers, timer);
+    voxelize(buffers, timer);
     flux_.begin(voxels());
     if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.clusters.shadow);
     side_gather_->run(voxels(), first_bounce, flux_, timer);
@@ -51,18 +55,20 @@ class LitVoxels {
     if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells), voxels().grid)) return false;
     voxelization_.count_again();
     emitters_ = emitter_pieces(scene_, voxels().grid);
+    follow_albedo();
     return true;
   }
   const VoxelGridGl& voxels() const { return voxelization_.voxels(); }
   const SideFluxGl& flux() const { return flux_; }
   bool emits() const { return !emitters_.empty(); }
-  size_t bytes() const { return voxelization_.bytes() + flux_.bytes(); }
+  size_t bytes() const { return voxelization_.bytes() + flux_.bytes() + (pockets_ ? pockets_->bytes() : 0); }
 
   VolumeReport report(const BounceReport& bounces) const {
     VolumeReport r;
     r.on_gpu = true;
     r.grid = voxels().grid.cells;
     r.sides = voxels().side_count.download<std::uint32_t>(1)[0];
+    r.pocket_cells = pockets_ ? pockets_->cells() : 0;
     r.bounces = bounces;
     r.lost = flux_.lost();
     for (const gl::Buffer* flux : {&flux_.emitted(), &flux_.punctual()}) {
@@ -72,9 +78,21 @@ class LitVoxels {
   }
 
  private:
+  void follow_albedo() {
+    if (!may_have_white_pockets(largest_albedo(scene_)))
+      pockets_.reset();
+    else if (!pockets_)
+      pockets_ = std::make_unique<WhitePocketsGl>();
+  }
+  void voxelize(const gl::SceneBuffers& buffers, gl::PassTimer& timer) {
+    voxelization_.run(buffers, timer);
+    if (pockets_) pockets_->run(voxels(), timer);
+  }
+
   const Scene& scene_;
   VolumeOptions options_;
   SlicedVoxelization voxelization_;
+  std::unique_ptr<WhitePocketsGl> pockets_;  // of scenes that can have some
   SideFluxGl flux_;
   InjectReflectiveShadowMap inject_;
   std::vector<FluxSample> emitters_;
@@ -177,7 +195,8 @@ size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm
   const std::uint32_t capacity = side_capacity_for(expected.sides);
   const bool lit = options.source == VolumeOptions::Source::lights;
   const size_t bytes = voxelization_bytes(grid, scene, expected) +
-                       SideFluxGl::bytes_for(capacity, lit ? emitter_pieces(scene, grid).size() : 0);
+                       SideFluxGl::bytes_for(capacity, lit ? emitter_pieces(scene, grid).size() : 0) +
+                       (may_have_white_pockets(largest_albedo(scene)) ? WhitePocketsGl::bytes_for(grid) : 0);
   if (!carries_sides(scheme.scheme)) {
     return bytes + CellVolumesGl::bytes_for(grid) + PulseVolumeGl::bytes_for(grid, scheme.sh_order) +
            RadianceGather::bytes_for(size);

@@ -163,7 +163,10 @@ class VolumeStage : public Stage {
   }
   void report(FrameReport& report) const override {
     report.of<VolumeReport>() = volume_->report();
-    add_figures(report.of<VolumeReport>(), report);
+    const VolumeReport& volume = report.of<VolumeReport>();
+    add_figures(volume, report);
+    warn_of_answer(scene_.name, options_, volume.bounces, volume.pocket_cells,
+                   size_t(volume.grid.x) * size_t(volume.grid.y) * size_t(volume.grid.z));
     report.memory_bytes += report.of<VolumeReport>().memory_bytes;
   }
   std::string announcement() const override {
