@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <utility>
 
 #include "core/halton.h"
+#include "core/hilbert.h"
 #include "core/luminance.h"
 #include "core/surface.h"
 
@@ -58,6 +61,18 @@ glm::dvec3 mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t tri
   return sum / double(n * n);
 }
 
+std::vector<EmitterPoint> in_order_of(const std::vector<std::uint64_t>& places,
+                                      const std::vector<EmitterPoint>& points) {
+  std::vector<size_t> order(points.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return std::pair(places[a], a) < std::pair(places[b], b); });
+  std::vector<EmitterPoint> ordered;
+  ordered.reserve(points.size());
+  for (const size_t i : order) ordered.push_back(points[i]);
+  return ordered;
+}
+
 }  // namespace
 
 EmitterPoints::EmitterPoints(const Scene& scene) : scene_(&scene) {
@@ -87,6 +102,8 @@ std::vector<EmitterPoint> EmitterPoints::points(int count) const {
   std::vector<EmitterPoint> points;
   if (empty()) return points;
   points.reserve(size_t(count));
+  std::vector<std::uint64_t> places;  // side, then place on the curve
+  places.reserve(size_t(count));
   size_t side = 0;
   for (int i = 0; i < count; ++i) {
     while (side + 1 < sides_.size() && cumulative_[side] <= (i + 0.5) / count) ++side;
@@ -100,8 +117,9 @@ std::vector<EmitterPoint> EmitterPoints::points(int count) const {
     const glm::vec3 radiance = p.emission * p.alpha;
     points.push_back({p.position, s.back ? -p.geometric_normal : p.geometric_normal,
                       glm::vec3(glm::dvec3(radiance) * (glm::pi<double>() * area)), float(area)});
+    places.push_back(std::uint64_t(side) << 32 | hilbert_index(glm::vec2(xi)));
   }
-  return points;
+  return in_order_of(places, points);
 }
 
 }  // namespace volgi
