@@ -10,6 +10,7 @@
 #include "screen/visibility/area_maps/area_lights_block.glsl"
 #include "screen/visibility/area_maps/light_order.glsl"
 #include "voxel/grid_block.glsl"
+#include "voxel/open_way.glsl"
 #include "voxel/side_count.glsl"
 #include "voxel/side_middle.glsl"
 #include "voxel/sides.glsl"
@@ -19,6 +20,12 @@ layout(std430, binding = GATHERED_EMITTED_SLOT) writeonly buffer Emitted { vec4 
 layout(std430, binding = GATHERED_PUNCTUAL_SLOT) writeonly buffer Punctual { vec4 punctual_flux[]; };
 uniform int light_count;
 uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
+
+// Maps are drawn from too far away for what is so near: cells tell what hides it.
+bool reaches(VirtualLight l, Side side) {
+  ivec3 cell;
+  return cell_in_front(cell_from_world(grid, l.position), l.normal, cell) && open_way(cell, cell_coord(grid, side.cell));
+}
 
 void main() {
   uint s = global_index();
@@ -45,8 +52,7 @@ void main() {
       visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
     }
     vec3 irradiance = l.flux * (visibility * share * form);
-    if (share < 1.0)
-      // Nothing hides what is so near, as for pixels.
+    if (share < 1.0 && reaches(l, side))
       irradiance += irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), 1.0 - share, zone);
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
