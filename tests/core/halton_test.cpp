@@ -122,6 +122,23 @@ TEST(EmitterPoints, DoubleSidedOnesSendFromBothSides) {
   EXPECT_NEAR(area, 4.0, 1e-4);
 }
 
+// Sixteen that follow on each other are the sub-lights of one virtual light: a piece of surface, not points all over
+// it.
+TEST(EmitterPoints, ThoseThatFollowOnEachOtherAreNear) {
+  const Scene scene = glowing_rectangle({3, 2, 1});  // of 2 square metres
+  constexpr int count = 4096, run = 16;
+  const auto points = EmitterPoints(scene).points(count);
+  double spread = 0.0;
+  for (size_t first = 0; first < points.size(); first += run) {
+    glm::dvec3 mean(0.0);
+    for (size_t i = first; i < first + run; ++i) mean += glm::dvec3(points[i].position) / double(run);
+    for (size_t i = first; i < first + run; ++i)
+      spread += glm::dot(glm::dvec3(points[i].position) - mean, glm::dvec3(points[i].position) - mean);
+  }
+  // A square of area a has the mean square radius a / 6; all of a triangle, a few tenths.
+  EXPECT_LT(spread / count, 4.0 / 6.0 * 2.0 * run / count);
+}
+
 TEST(EmitterPoints, TexturesAndCoverageCount) {
   Scene scene = glowing_rectangle({4, 4, 4});
   TextureImage image{16, 16, std::vector<std::uint8_t>(16 * 16 * 4, 0)};

@@ -24,6 +24,12 @@ constexpr Parameter PARAMETERS[] = {
     choice<VirtualAreaLightOptions>(
         {"val.position", "", "of a cluster: of its light nearest to the mean, or the mean as Dong has it"}, POSITIONS,
         [](VirtualAreaLightOptions& o) -> auto& { return o.position; }),
+    number<VirtualAreaLightOptions>(
+        {"val.plane", "",
+         "weight of a light's distance off its cluster's plane, beside 0.7 of its distance and 0.3 of its angle; 0 is "
+         "as "
+         "Dong has it"},
+        {0, 100}, [](VirtualAreaLightOptions& o) -> auto& { return o.plane_weight; }),
     number<AreaMapOptions>(
         {"val.map", "texels", "on a side of an area light's map"}, {16, 4096},
         [](AreaMapOptions& o) -> auto& { return o.texels; }),

@@ -22,7 +22,7 @@ const VirtualAreaLightOptions& checked(const VirtualAreaLightOptions& options) {
     throw Error(ExitCode::usage, std::to_string(options.count) + " area lights: the number must lie between 1 and " +
                                      std::to_string(MAX_VIRTUAL_AREA_LIGHTS));
   }
-  for (const float weight : {options.position_weight, options.normal_weight}) {
+  for (const float weight : {options.position_weight, options.normal_weight, options.plane_weight}) {
     if (std::isfinite(weight) && weight >= 0.0f) continue;
     throw Error(ExitCode::usage, "weight " + std::to_string(weight) + " of area lights: must be finite and at least 0");
   }
@@ -71,7 +71,9 @@ void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_dia
   area_lights_.bind_storage(MADE_AREA_LIGHTS_SLOT);
   order_.bind_storage(MADE_ORDER_SLOT);
   for (const gl::Program* program : {&seed_, &assign_, &update_, &list_}) program->set("light_count", count);
-  assign_.set("weight_per_m", options_.position_weight / std::max(scene_diagonal_m, 1e-30f));
+  const float diagonal_m = std::max(scene_diagonal_m, 1e-30f);
+  assign_.set("weight_per_m", options_.position_weight / diagonal_m);
+  assign_.set("weight_off_plane_per_m", options_.plane_weight / diagonal_m);
 
   seed_.use();
   gl::dispatch({1, 1, 1}, {1, 1, 1});

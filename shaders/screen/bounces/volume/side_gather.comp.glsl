@@ -32,6 +32,8 @@ void main() {
   if (s >= side_count || s >= uint(sides.length())) return;
   Side side = sides[s];
   vec3 position = world_from_cell(grid, middle_of(side));
+  // Depths are rounded as vertices are, by 3/2 steps at most: from behind its own surface a side would see no light.
+  vec3 beside = position + side.normal * (grid.cell_size_m * 2.0 / float(SLICE_STEPS));
   vec3 reflected = vec3(0.0), emitted = vec3(0.0);
   uint seen = NO_VIRTUAL_AREA_LIGHT;
   float visibility = 0.0;
@@ -49,7 +51,7 @@ void main() {
     if (form <= 0.0 && share >= 1.0) continue;
     if (cluster != seen) {
       seen = cluster;
-      visibility = area_light_visibility(int(cluster), area_lights[cluster], position, side.normal);
+      visibility = area_light_visibility(int(cluster), area_lights[cluster], beside, side.normal);
     }
     vec3 irradiance = l.flux * (visibility * share * form);
     if (share < 1.0 && reaches(l, side))

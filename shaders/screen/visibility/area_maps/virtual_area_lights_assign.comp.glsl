@@ -1,5 +1,6 @@
 #version 450 core
-// Every light to the cluster with the nearest center, of those equally near the first. Dong et al. 2009, section 5.1.
+// Every light to the cluster with the nearest center, of those equally near the first. Dong et al. 2009, section 5.1, and how
+// far the light is off the center's plane (VirtualAreaLightOptions::plane_weight).
 #define CENTERS_UNIFORM
 #include "shared/constants.glsl"
 #include "shared/global_index.shared.h"
@@ -9,6 +10,7 @@
 layout(local_size_x = LINEAR_GROUP) in;
 uniform float weight_per_m;
 uniform float weight_per_rad;
+uniform float weight_off_plane_per_m;
 
 // Between unit vectors, within 3e-7 rad: twice the arc sine of half the chord, which is at most sqrt(1/2) on the nearer
 // of the two sides; asin(sqrt(t)) / sqrt(t) by Chebyshev interpolation over [0, 1/2]. (GLSL leaves acos's error open.)
@@ -32,8 +34,9 @@ uint nearest_cluster(vec3 position, vec3 normal) {
   float smallest = 3.0e38;
   uint count = seeded;
   for (uint k = 0u; k < count; ++k) {
-    float d = weight_per_m * length(position - centers[k].position) +
-              weight_per_rad * angle_between(normal, centers[k].normal);
+    vec3 way = position - centers[k].position;
+    float d = weight_per_m * length(way) + weight_per_rad * angle_between(normal, centers[k].normal) +
+              weight_off_plane_per_m * abs(dot(way, centers[k].normal));
     if (d < smallest) {
       smallest = d;
       nearest = k;

@@ -55,8 +55,9 @@ class PlainKMeans {
   double distance(size_t i, size_t k) const {
     const glm::dvec3 n(lights_[i].normal);
     const double angle = std::atan2(glm::length(glm::cross(n, normals_[k])), glm::dot(n, normals_[k]));
-    return 0.7 * glm::distance(glm::dvec3(lights_[i].position), means_[k]) / diagonal_m_ +
-           0.3 * angle / glm::pi<double>();
+    const glm::dvec3 way = glm::dvec3(lights_[i].position) - means_[k];
+    return 0.7 * glm::length(way) / diagonal_m_ + 0.3 * angle / glm::pi<double>() +
+           4.0 * std::abs(glm::dot(way, normals_[k])) / diagonal_m_;
   }
 
   bool assign() {
