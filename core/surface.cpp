@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "core/texel_filter_internal.h"
+#include "shaders/shared/material.shared.h"
 
 namespace volgi {
 namespace {
@@ -46,7 +47,7 @@ glm::vec4 sample_use(const Scene& scene, const Mesh& mesh, const TextureUse& use
 
 float alpha_of(const Material& material, float alpha) {
   if (material.alpha_mode == AlphaMode::opaque) return 1.0f;
-  if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+  if (material.alpha_mode == AlphaMode::mask) return alpha + ALPHA_CUTOFF_SLACK >= material.alpha_cutoff ? 1.0f : 0.0f;
   return std::clamp(alpha, 0.0f, 1.0f);
 }
 

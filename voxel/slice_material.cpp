@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shaders/shared/material.shared.h"
 #include "voxel/slice_internal.h"
 
 namespace volgi::slicing {
@@ -42,7 +43,7 @@ SlicedMaterial sliced(const Material& m, const glm::vec4& base, float metallic_t
   const float metallic = m.metallic_factor * metallic_texel;
   SlicedMaterial out{glm::clamp(glm::vec3(base) * (1.0f - metallic), 0.0f, 1.0f), glm::vec3(0.0f), 1.0f};
   if (m.is_emissive()) out.emission = m.emissive_radiance * emissive_texel;
-  if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a >= m.alpha_cutoff ? 1.0f : 0.0f;
+  if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a + ALPHA_CUTOFF_SLACK >= m.alpha_cutoff ? 1.0f : 0.0f;
   if (m.alpha_mode == AlphaMode::blend) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);
   return out;
 }

@@ -45,7 +45,8 @@ ReferencePicture traced(const ReferenceOptions& options) {
   tracer.max_bounces = options.bounces;
   tracer.light = requested_light(options.light);
   if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
-  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  options.scene.add_lights(scene);
   warn_of_open_scene(scene, glm::vec3(options.scene.camera(scene).world_from_camera[3]));
   return path_trace(scene, options.scene.camera(scene), tracer);
 }
@@ -60,7 +61,8 @@ ReferencePicture gathered(const ReferenceOptions& options) {
   gather.threads = options.tracer.threads;
   if (options.visibility == "none") gather.visibility = VirtualLightGatherOptions::Visibility::none;
   const VirtualLightList list = read_virtual_lights(*options.virtual_lights);
-  const Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  options.scene.add_lights(scene);
   return gather_virtual_lights(scene, options.scene.camera(scene), list, gather);
 }
 

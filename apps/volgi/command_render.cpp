@@ -10,9 +10,11 @@
 #include "apps/volgi/frame_options.h"
 #include "apps/volgi/frame_stats.h"
 #include "apps/volgi/frame_times.h"
+#include "apps/volgi/parse_number.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/exposure.h"
 #include "core/gl/context.h"
 #include "core/image.h"
 #include "core/log.h"
@@ -34,22 +36,27 @@ struct RenderCommand {
   std::filesystem::path out = "out.png";
   std::filesystem::path stats;
   std::filesystem::path dump;
-  float exposure_ev = 0.0f;
+  std::string exposure = "auto";
   bool half = false;
   bool quiet = false;
   int frames = 1;
   std::string animate;  // T0:T1:FPS; empty: one picture
   DeviceOptions device;
 
-  int run() const;
+  int run();
 
  private:
+  std::optional<float> exposure_ev_;  // of the first picture, for all of them
+
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
-  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const;
+  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer);
   TimedFrames render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const;
-  void write_picture(const screen::Frame& picture, const std::filesystem::path& path) const;
+                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer);
+  bool writes_png() const { return out.extension() == ".png"; }
+  void light(Scene& loaded, const Camera& camera) const;
+  void choose_exposure(const Image& image, const std::filesystem::path& path);
+  void write_picture(const screen::Frame& picture, const std::filesystem::path& path);
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
                          const gl::Context& context, gl::PassTimer& timer, const TimedFrames& timed) const;
 };
@@ -88,18 +95,59 @@ void RenderCommand::check_outputs() const {
   check_writable(lights_file());
 }
 
-void RenderCommand::write_picture(const screen::Frame& picture, const std::filesystem::path& path) const {
-  const Image image = screen::image_from_texture(picture.radiance());
-  warn_of_bad_pixels(image);
-  if (out.extension() == ".exr") {
-    write_exr(path, image, half);
-  } else {
-    write_png(path, image, exposure_ev);
+/// --exposure; what `auto` chose is said, and kept for later pictures of an animation.
+void RenderCommand::choose_exposure(const Image& image, const std::filesystem::path& path) {
+  if (exposure_ev_) return;
+  if (exposure != "auto") {
+    const auto given = parse_number<float>(exposure);
+    if (!given) throw Error(ExitCode::usage, "--exposure " + exposure + ": takes stops, such as -1.5, or auto");
+    exposure_ev_ = *given;
+    return;
+  }
+  exposure_ev_ = automatic_exposure_ev(image);
+  if (!quiet) fmt::print("{}: --exposure {:g} (auto)\n", path.string(), double(*exposure_ev_));
+}
+
+/// A PNG that hardly shows anything says what to try.
+void warn_of_exposure(const Image& image, float exposure_ev, const std::filesystem::path& path) {
+  const float scale = std::exp2(exposure_ev);
+  size_t white = 0, black = 0;
+  for (const glm::vec3& p : image.pixels) {
+    const glm::vec3 shown = tone_map(p * scale);
+    white += std::min({shown.x, shown.y, shown.z}) > 0.95f;
+    black += std::max({shown.x, shown.y, shown.z}) < 0.002f;
+  }
+  const double pixels = std::max<double>(1.0, double(image.pixels.size()));
+  for (const auto& [count, name] : {std::pair(white, "white"), std::pair(black, "black")}) {
+    if (double(count) <= 0.9 * pixels) continue;
+    const float other = automatic_exposure_ev(image);
+    const std::string hint = std::abs(other - exposure_ev) > 1.0f ? fmt::format("; try --exposure {:g}", double(other))
+                                                                  : std::string("; is the camera where the light is?");
+    warn_once(
+        fmt::format("{}: {:.0f} % of the picture is {}{}", path.string(), 100.0 * double(count) / pixels, name, hint));
   }
 }
 
+void RenderCommand::write_picture(const screen::Frame& picture, const std::filesystem::path& path) {
+  const Image image = screen::image_from_texture(picture.radiance());
+  warn_of_bad_pixels(image);
+  if (!writes_png()) {
+    write_exr(path, image, half);
+    return;
+  }
+  choose_exposure(image, path);
+  warn_of_exposure(image, *exposure_ev_, path);
+  write_png(path, image, *exposure_ev_);
+}
+
+/// What the command line adds, and for pictures to look at a lamp where there is no light at all.
+void RenderCommand::light(Scene& loaded, const Camera& camera) const {
+  scene.add_lights(loaded);
+  if (writes_png()) scene.add_default_lamp(loaded, camera);
+}
+
 /// Renders the same picture `frames` times, to time it.
-TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) const {
+TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) {
   const Camera camera = scene.camera(loaded);
   // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a
   // cold frame's, and said to be.
@@ -118,7 +166,7 @@ TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loa
 
 /// Each picture is written, whole, before the next one begins.
 TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) const {
+                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) {
   TimedFrames timed{1, false, {}};
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
@@ -126,6 +174,7 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
     {
       const auto scope = timer.scope("core/move_scene");
       source.move(moving, times.at(k), box);
+      light(moving, scene.camera(moving));
     }
     picture.follow_scene(timer);
     picture.render(scene.camera(moving), timer);
@@ -155,7 +204,7 @@ nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen
   return numbers;
 }
 
-int RenderCommand::run() const {
+int RenderCommand::run() {
   set_quiet(quiet);
   frame.volume.limit_threads();
   const screen::FrameOptions options = frame.frame_options(scene.size());
@@ -165,6 +214,7 @@ int RenderCommand::run() const {
   const WorldBox box = box_of(source, times);
   Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
   const Camera camera = scene.camera(loaded);  // says so now if there is none
+  light(loaded, camera);
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   screen::Frame picture(loaded, options);
@@ -198,7 +248,10 @@ void add_render_command(CLI::App& app, int& exit_code) {
   options->scene.add_to(*command);
   command->add_option("-o,--output", options->out, "picture to write, .exr or .png")->capture_default_str();
   options->frame.add_to(*command);
-  command->add_option("--exposure", options->exposure_ev, "PNG only: stops (powers of two) before the tone map")
+  command
+      ->add_option("--exposure", options->exposure,
+                   "PNG only: stops (powers of two) before the tone map, or auto: middle grey for the geometric mean")
+      ->type_name("EV|auto")
       ->capture_default_str();
   command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
   CLI::Option* animate =
@@ -213,6 +266,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->excludes(animate);
+  command->add_flag("--no-default-light", options->scene.no_default_light,
+                    "no lamp beside the camera where a scene for a PNG has no light");
   options->device.add_to(*command);
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
   command->add_option("--dump", options->dump,

@@ -98,8 +98,8 @@ Light place_light(Light light, const glm::dmat4& world_from_node, const glm::dve
   return light;
 }
 
-/// The view is the inverse of the node's transform. Its scale is moved into the camera's own numbers, so that
-/// world_from_camera stays orthonormal; shear is dropped.
+/// The view is the inverse of the node's transform, without its scale (glTF 2.0, 3.10.2) and without shear: a camera
+/// below a root that turns centimetres into metres keeps its field of view, and its planes as they are written.
 Camera place_camera(const std::filesystem::path& file, Camera camera, const glm::dmat4& world_from_node,
                     const glm::dvec3& world_origin) {
   const glm::dmat3 axes(world_from_node);
@@ -116,13 +116,6 @@ Camera place_camera(const std::filesystem::path& file, Camera camera, const glm:
   const glm::dvec3 position = glm::dvec3(world_from_node[3]) - world_origin;
   camera.world_from_camera = glm::mat4(
       glm::dmat4(glm::dvec4(right, 0.0), glm::dvec4(up, 0.0), glm::dvec4(back, 0.0), glm::dvec4(position, 1.0)));
-  camera.znear = float(camera.znear * scale.z);
-  camera.zfar = float(camera.zfar * scale.z);
-  if (camera.kind == Camera::Kind::orthographic) {
-    camera.ymag = float(camera.ymag * scale.y);
-  } else if (std::abs(scale.y - scale.z) > 1e-6 * scale.z) {
-    camera.yfov_rad = float(2.0 * std::atan(std::tan(0.5 * camera.yfov_rad) * scale.y / scale.z));
-  }
   return camera;
 }
 

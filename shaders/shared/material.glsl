@@ -57,7 +57,7 @@ vec3 material_emission(vec2 uv0, vec2 uv1) {
 // Share of light that the surface stops: 1 when opaque, 0 or 1 for MASK, alpha for BLEND. For voxels.
 float material_coverage(float alpha) {
   if (material_alpha_mode == MATERIAL_OPAQUE) return 1.0;
-  if (material_alpha_mode == MATERIAL_MASK) return alpha >= material_alpha_cutoff ? 1.0 : 0.0;
+  if (material_alpha_mode == MATERIAL_MASK) return alpha + ALPHA_CUTOFF_SLACK >= material_alpha_cutoff ? 1.0 : 0.0;
   return clamp(alpha, 0.0, 1.0);
 }
 

@@ -63,7 +63,7 @@ TEST(VirtualLights, OneOverAPlaneIsTheFormula) {
   const VirtualLightList list{glm::dvec3(0), {light_at(position, normal, flux, VIRTUAL_LIGHT_REFLECTED, 0.3f)}};
   const ReferencePicture p = gather_virtual_lights(scene, kAbove, list, small());
   for (size_t i = 0; i < p.color.pixels.size(); ++i) {
-    const double form = disk_to_point_summed(p.position.pixels[i], {0, 1, 0}, position, normal, double(0.3f));
+    const double form = disk_to_point_summed(p.position.pixels[i], {0, 1, 0}, position, normal, double(0.3f), 150, 150);
     const bool behind = glm::dot(normal, p.position.pixels[i] - position) <= 0.0f;
     for (int c = 0; c < 3; ++c) {
       const double expected = behind ? 0.0 : double(albedo[c]) / std::numbers::pi * double(flux[c]) * form;

@@ -15,7 +15,7 @@ struct VirtualAreaLightOptions {
   float normal_weight = 0.3f;    // w_alpha, of the angle over pi
   // Ours, of the distance off the cluster's plane over the scene's diagonal; 0 is as printed. Without it both sides of
   // a body come together, the inside of its far wall and the outside of its near one, and are seen from one of them.
-  float plane_weight = 4.0f;
+  float plane_weight = 2.0f;
   enum class Position {
     nearest,  // of the cluster's light that is nearest to the mean of all
     mean,     // as printed (§5): may lie inside what the lights lie on

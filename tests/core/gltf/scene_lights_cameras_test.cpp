@@ -125,22 +125,30 @@ TEST_F(SceneLightsCameras, InfiniteFarPlaneReachesBeyondTheScene) {
   EXPECT_LT(camera.zfar, 400.0f);
 }
 
-TEST_F(SceneLightsCameras, ScaledCameraNodesSeeTheSamePicture) {
+/// glTF 2.0, 3.10.2: the view ignores its node's scale, even or not.
+TEST_F(SceneLightsCameras, TheScaleOfACamerasNodeIsIgnored) {
   const Json perspective = {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}, {"zfar", 50.0}}}};
   const Json orthographic = {{"type", "orthographic"},
                              {"orthographic", {{"xmag", 3.0}, {"ymag", 2.0}, {"znear", 0.5}, {"zfar", 9.0}}}};
+  const Json turned = {{"rotation", {0.0, 0.6, 0.0, 0.8}}, {"translation", {1.0, 2.0, 3.0}}};
   for (const Json& camera : {perspective, orthographic}) {
     writer = GltfWriter();
-    camera_node(camera, {{"scale", {2.0, 2.0, 2.0}}});
-    const Camera scaled = load().cameras[0];
-    EXPECT_NEAR(glm::determinant(glm::mat3(scaled.world_from_camera)), 1.0f, 1e-6f);
-    // The node's inverse maps (x, y, -z) to half of it: what lay at 1 is seen at 2.
-    writer = GltfWriter();
-    camera_node(camera, Json::object());
+    camera_node(camera, turned);
     const Camera plain = load().cameras[0];
-    const glm::vec4 a = clip_from_camera(scaled, {16, 16}) * glm::vec4(0.6f, 0.4f, -4, 1);
-    const glm::vec4 b = clip_from_camera(plain, {16, 16}) * glm::vec4(0.3f, 0.2f, -2, 1);
-    expect_near(glm::vec3(a) / a.w, glm::vec3(b) / b.w);
+    for (const std::vector<double>& scale :
+         {std::vector<double>{0.01, 0.01, 0.01}, {1.0, 2.0, 1.0}, {10.0, 10.0, 10.0}}) {
+      writer = GltfWriter();
+      Json node = turned;
+      node["scale"] = scale;
+      camera_node(camera, node);
+      const Camera scaled = load().cameras[0];
+      for (int column = 0; column < 4; ++column)
+        expect_near(glm::vec3(scaled.world_from_camera[column]), glm::vec3(plain.world_from_camera[column]));
+      EXPECT_EQ(scaled.yfov_rad, plain.yfov_rad);
+      EXPECT_EQ(scaled.ymag, plain.ymag);
+      EXPECT_EQ(scaled.znear, plain.znear);
+      EXPECT_EQ(scaled.zfar, plain.zfar);
+    }
   }
 }
 

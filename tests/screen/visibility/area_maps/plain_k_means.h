@@ -57,7 +57,7 @@ class PlainKMeans {
     const double angle = std::atan2(glm::length(glm::cross(n, normals_[k])), glm::dot(n, normals_[k]));
     const glm::dvec3 way = glm::dvec3(lights_[i].position) - means_[k];
     return 0.7 * glm::length(way) / diagonal_m_ + 0.3 * angle / glm::pi<double>() +
-           4.0 * std::abs(glm::dot(way, normals_[k])) / diagonal_m_;
+           2.0 * std::abs(glm::dot(way, normals_[k])) / diagonal_m_;
   }
 
   bool assign() {
