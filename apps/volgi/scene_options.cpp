@@ -10,6 +10,7 @@
 #include "apps/volgi/parse_number.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/visibility/room_camera.h"
 
 namespace volgi::app {
 namespace {
@@ -158,8 +159,12 @@ Camera SceneOptions::camera(const Scene& scene) const {
                                              scene.path.string(), count));
   }
   if (count > 0) return scene.cameras.front();
-  warn_once(fmt::format("{}: no camera; the whole scene is framed", scene.path.string()));
-  return framing_camera(scene.bounds_min, scene.bounds_max);
+  if (made_camera) return *made_camera;
+  made_camera = room_camera(scene);
+  warn_once(fmt::format("{}: no camera; {}; --eye and --target choose another", scene.path.string(),
+                        made_camera ? "one stands inside" : "the whole scene is framed"));
+  if (!made_camera) made_camera = framing_camera(scene.bounds_min, scene.bounds_max);
+  return *made_camera;
 }
 
 }  // namespace volgi::app

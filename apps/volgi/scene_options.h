@@ -28,11 +28,13 @@ struct SceneOptions {
   std::string size_text = "512x512";
   std::vector<std::string> lamps, suns;
   bool no_default_light = false;
+  mutable std::optional<Camera> made_camera;  // where the file has none
 
   void add_to(CLI::App& command);
   /// @throws Error(usage) when the text is not WxH with both in 1 ... 16384.
   glm::ivec2 size() const;
-  /// The requested camera; the file's first one; or, with a warning, one that frames the bounds.
+  /// The requested camera; the file's first one; or, with a warning, one inside a closed place (room_camera) or one
+  /// that frames the bounds, the same one for all frames.
   /// @throws Error(usage) for a camera that does not exist, naming how many there are.
   Camera camera(const Scene& scene) const;
   /// Those of --lamp and --sun. @throws Error(usage) naming the text that is neither.

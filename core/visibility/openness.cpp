@@ -10,19 +10,13 @@
 #include "core/log.h"
 #include "core/surface.h"
 #include "core/visibility/embree_scene.h"
+#include "core/visibility/even_direction_internal.h"
 
 namespace volgi {
 
 namespace {
 
 constexpr int MAX_SURFACES = 2;
-
-/// Even over the sphere: an additive recurrence (Roberts 2018).
-glm::vec3 even_direction(std::uint32_t k) {
-  const float u = float(3242174889u * k >> 8) * 0x1p-24f, v = float(2447445414u * k >> 8) * 0x1p-24f;
-  const float y = 1.0f - 2.0f * u, across = std::sqrt(std::max(0.0f, 1.0f - y * y));
-  return {across * std::cos(glm::two_pi<float>() * v), y, across * std::sin(glm::two_pi<float>() * v)};
-}
 
 bool leaves(const EmbreeScene& embree, glm::vec3 origin, std::uint32_t k) {
   constexpr float FAR = std::numeric_limits<float>::infinity();

@@ -35,10 +35,10 @@ rm still_*.png
 
 # The third frame's name is taken by a folder.
 mkdir -p taken.0002.png/inside
-"$volgi" render builtin:metaballs "${small[@]}" --gi none -o taken.png --animate 0:1:4 --quiet 2> "$logs/err"
+"$volgi" render builtin:metaballs "${small[@]}" --gi none --exposure 0 -o taken.png --animate 0:1:4 --quiet 2> "$logs/err"
 (($? == 6)) || fail "a frame that cannot be written: exit code is not 6"
 [[ $(echo taken.*.png) == "taken.0000.png taken.0001.png taken.0002.png" ]] || fail "frames: $(echo ./*)"
-must "$volgi" render builtin:metaballs "${small[@]}" --gi none -o alone.png --time 0.25 --quiet
+must "$volgi" render builtin:metaballs "${small[@]}" --gi none --exposure 0 -o alone.png --time 0.25 --quiet
 cmp alone.png taken.0001.png || fail "the frame before one that failed is not whole"
 rm -r taken.* alone.png
 
