@@ -49,7 +49,8 @@ struct Material {
   glm::vec4 base_color_factor{1.0f};
   TextureUse base_color;              // sRGB
   float metallic_factor = 1.0f;       // glTF's default
-  TextureUse metallic;                // linear, blue channel
+  float roughness_factor = 1.0f;      // glTF's default
+  TextureUse metallic;                // linear: blue metallic, green roughness
   glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
   TextureUse emissive;                // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;

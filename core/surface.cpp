@@ -91,8 +91,9 @@ SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t t
 
   glm::vec4 base = material.base_color_factor * sample_use(scene, mesh, material.base_color, at, true);
   if (!mesh.colors.empty()) base *= interpolate(mesh.colors, at.indices, at.weights);
-  const float metallic = material.metallic_factor * sample_use(scene, mesh, material.metallic, at, false).z;
-  point.albedo = glm::clamp(glm::vec3(base) * (1.0f - metallic), 0.0f, 1.0f);
+  const glm::vec4 texel = sample_use(scene, mesh, material.metallic, at, false);
+  point.albedo =
+      shared::surface_albedo(glm::vec3(base), material.metallic_factor * texel.z, material.roughness_factor * texel.y);
   point.alpha = alpha_of(material, base.w);
   if (material.is_emissive()) {
     point.emission = material.emissive_radiance * glm::vec3(sample_use(scene, mesh, material.emissive, at, true));
@@ -104,9 +105,13 @@ float largest_albedo(const Scene& scene) {
   std::vector<glm::vec3> of_material;
   of_material.reserve(scene.materials.size());
   for (const Material& m : scene.materials) {
-    const float min_metallic = m.metallic_factor * texture_extreme(scene, m.metallic, false, false).z;
-    const glm::vec3 texture_maximum(texture_extreme(scene, m.base_color, true, true));
-    of_material.push_back(glm::vec3(m.base_color_factor) * texture_maximum * (1.0f - min_metallic));
+    // Linear in the metallic part, and falling with the roughness.
+    const glm::vec4 least = texture_extreme(scene, m.metallic, false, false);
+    const glm::vec4 most = texture_extreme(scene, m.metallic, false, true);
+    const glm::vec3 base = glm::vec3(m.base_color_factor) * glm::vec3(texture_extreme(scene, m.base_color, true, true));
+    const float roughness = m.roughness_factor * least.y;
+    of_material.push_back(glm::max(shared::surface_albedo(base, m.metallic_factor * least.z, roughness),
+                                   shared::surface_albedo(base, m.metallic_factor * most.z, roughness)));
   }
   float largest = 0.0f;
   for (const Mesh& mesh : scene.meshes) {

@@ -10,7 +10,7 @@ struct SurfacePoint {
   glm::vec3 position;
   glm::vec3 geometric_normal;  // unit; zero for a triangle without area
   glm::vec3 shading_normal;    // unit, interpolated
-  glm::vec3 albedo;            // baseColor · COLOR_0 · (1 - metallic), linear, in [0,1]
+  glm::vec3 albedo;            // shared::surface_albedo of baseColor · COLOR_0, linear, in [0,1]
   float alpha;                 // 1 when opaque; 0 or 1 for MASK; coverage for BLEND
   glm::vec3 emission;          // radiance sent to the front side (both sides when the material is double-sided)
 };

@@ -38,10 +38,11 @@ float level_of_detail(const Scene& scene, const Mesh& mesh, const glm::uvec3& co
   return 0.5f * std::log2(float(std::clamp(of_footprint, 1.0, 1e30)));
 }
 
-/// @param base  baseColor times COLOR_0; @param metallic, emissive  of the texture or 1.
-SlicedMaterial sliced(const Material& m, const glm::vec4& base, float metallic_texel, const glm::vec3& emissive_texel) {
-  const float metallic = m.metallic_factor * metallic_texel;
-  SlicedMaterial out{glm::clamp(glm::vec3(base) * (1.0f - metallic), 0.0f, 1.0f), glm::vec3(0.0f), 1.0f};
+/// @param base  baseColor times COLOR_0; @param texel, emissive_texel  of the textures or 1.
+SlicedMaterial sliced(const Material& m, const glm::vec4& base, const glm::vec4& texel,
+                      const glm::vec3& emissive_texel) {
+  SlicedMaterial out{shared::surface_albedo(glm::vec3(base), m.metallic_factor * texel.z, m.roughness_factor * texel.y),
+                     glm::vec3(0.0f), 1.0f};
   if (m.is_emissive()) out.emission = m.emissive_radiance * emissive_texel;
   if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a + ALPHA_CUTOFF_SLACK >= m.alpha_cutoff ? 1.0f : 0.0f;
   if (m.alpha_mode == AlphaMode::blend) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);
@@ -57,7 +58,7 @@ std::vector<std::optional<SlicedMaterial>> constant_materials(const Scene& scene
     const Material& m = scene.materials[size_t(mesh.material)];
     const bool textured =
         m.base_color.texture >= 0 || m.metallic.texture >= 0 || (m.is_emissive() && m.emissive.texture >= 0);
-    if (!textured && mesh.colors.empty()) out[i] = sliced(m, m.base_color_factor, 1.0f, glm::vec3(1.0f));
+    if (!textured && mesh.colors.empty()) out[i] = sliced(m, m.base_color_factor, glm::vec4(1.0f), glm::vec3(1.0f));
   }
   return out;
 }
@@ -100,7 +101,7 @@ SlicedMaterial TriangleMaterial::at(const glm::vec3& weights) const {
     base *=
         weights.x * mesh.colors[corners_.x] + weights.y * mesh.colors[corners_.y] + weights.z * mesh.colors[corners_.z];
   }
-  const float metallic = texel(m.metallic, weights, metallic_lod_, false).z;
+  const glm::vec4 metallic = texel(m.metallic, weights, metallic_lod_, false);
   const glm::vec3 emissive(m.is_emissive() ? texel(m.emissive, weights, emissive_lod_, true) : glm::vec4(1.0f));
   return sliced(m, base, metallic, emissive);
 }

@@ -65,6 +65,7 @@ void add(Hash& hash, const Material& material) {
   hash.add(material.base_color_factor);
   hash.add(material.base_color);
   hash.add(material.metallic_factor);
+  hash.add(material.roughness_factor);
   hash.add(material.metallic);
   hash.add(material.emissive_radiance);
   hash.add(material.emissive);

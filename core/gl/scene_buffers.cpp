@@ -174,6 +174,7 @@ void SceneBuffers::bind_material(const Program& program, int material) const {
   const Material& m = materials_[size_t(material)];
   program.set("material_base_color_factor", m.base_color_factor);
   program.set("material_metallic_factor", m.metallic_factor);
+  program.set("material_roughness_factor", m.roughness_factor);
   program.set("material_emissive_radiance", m.emissive_radiance);
   program.set("material_alpha_mode", static_cast<int>(m.alpha_mode));
   program.set("material_alpha_cutoff", m.alpha_cutoff);

@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
 
 const std::set<std::string_view> supported_extensions = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                         "KHR_texture_transform", "KHR_mesh_quantization"};
+                                                         "KHR_materials_transmission", "KHR_texture_transform",
+                                                         "KHR_mesh_quantization"};
 
 enum class Kind { index, index_or_object, indices, size, number, numbers, number_or_numbers, text, flag, object, list };
 
@@ -32,7 +33,7 @@ const std::unordered_map<std::string_view, Kind>& property_kinds() {
     add(Kind::index_or_object, {"indices"});
     add(Kind::indices, {"children", "joints", "attributes"});
     add(Kind::size, {"count", "byteOffset", "byteLength", "byteStride"});
-    add(Kind::number, {"metallicFactor", "roughnessFactor", "alphaCutoff", "intensity", "range", "innerConeAngle",
+    add(Kind::number, {"metallicFactor", "roughnessFactor", "transmissionFactor", "alphaCutoff", "intensity", "range", "innerConeAngle",
                        "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
     add(Kind::numbers, {"translation", "matrix", "baseColorFactor", "emissiveFactor", "color", "offset"});
     add(Kind::number_or_numbers, {"rotation", "scale"});

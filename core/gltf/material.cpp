@@ -27,6 +27,22 @@ glm::vec3 read_emission(const Document& document, const tinygltf::Material& in, 
   return factor * in_range(document, strength, 0.0, largest_strength, who, "emissiveStrength");
 }
 
+/// KHR_materials_transmission: the share of light that passes, not bent and not coloured, as through a hole; the
+/// surface covers the rest.
+void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
+                        Material& material) {
+  const auto extension = in.extensions.find("KHR_materials_transmission");
+  if (extension == in.extensions.end() || !extension->second.Has("transmissionFactor")) return;
+  const tinygltf::Value& factor = extension->second.Get("transmissionFactor");
+  if (!factor.IsNumber()) refuse(document.path, fmt::format("{}: its transmissionFactor is not a number", who));
+  const float passes = in_range(document, factor.GetNumberAsDouble(), 0.0, 1.0, who, "transmissionFactor");
+  if (passes == 0.0f || material.alpha_mode == AlphaMode::mask) return;
+  if (extension->second.Has("transmissionTexture")) warn(document.path, "transmission textures are ignored");
+  const float covers = material.alpha_mode == AlphaMode::opaque ? 1.0f : material.base_color_factor.a;
+  material.alpha_mode = AlphaMode::blend;
+  material.base_color_factor.a = covers * (1.0f - passes);
+}
+
 AlphaMode read_alpha_mode(const Document& document, const std::string& mode, const std::string& who) {
   if (mode == "OPAQUE" || mode.empty()) return AlphaMode::opaque;
   if (mode == "MASK") return AlphaMode::mask;
@@ -45,11 +61,13 @@ Material read_material(const Document& document, size_t index, TextureTable& tex
   }
   material.base_color = textures.use(pbr.baseColorTexture, who + " baseColorTexture");
   material.metallic_factor = in_range(document, pbr.metallicFactor, 0.0, 1.0, who, "metallicFactor");
+  material.roughness_factor = in_range(document, pbr.roughnessFactor, 0.0, 1.0, who, "roughnessFactor");
   material.metallic = textures.use(pbr.metallicRoughnessTexture, who + " metallicRoughnessTexture");
   material.emissive_radiance = read_emission(document, in, who);
   material.emissive = textures.use(in.emissiveTexture, who + " emissiveTexture");
   material.alpha_mode = read_alpha_mode(document, in.alphaMode, who);
   material.alpha_cutoff = in_range(document, in.alphaCutoff, 0.0, 1e6, who, "alphaCutoff");
+  apply_transmission(document, in, who, material);
   material.double_sided = in.doubleSided;
   if (in.normalTexture.index >= 0) warn(document.path, "normal maps are ignored");
   return material;
@@ -64,18 +82,18 @@ bool needs_default_material(const Document& document) {
   return false;
 }
 
-void warn_of_black_metals(const Document& document, const std::vector<Material>& materials) {
-  const auto is_black_metal = [](const Material& m) {
+void warn_of_metals(const Document& document, const std::vector<Material>& materials) {
+  const auto is_metal = [](const Material& m) {
     const bool colored = glm::vec3(m.base_color_factor) != glm::vec3(0.0f);
     return m.metallic_factor >= 1.0f && m.metallic.texture < 0 && colored;
   };
-  const auto metal = std::find_if(materials.begin(), materials.end(), is_black_metal);
+  const auto metal = std::find_if(materials.begin(), materials.end(), is_metal);
   if (metal == materials.end()) return;
   const size_t index = size_t(metal - materials.begin());
   const bool in_file = index < document.model.materials.size();
   const std::string who = in_file ? element("material", index, metal->name) : "glTF's default material";
-  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default) and reflects nothing here: albedo "
-                                  "= baseColor x (1 - metallic)",
+  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default): it reflects as much as one, but "
+                                  "diffusely",
                                   who));
 }
 
@@ -88,7 +106,7 @@ Materials read_materials(const Document& document) {
     out.materials.push_back(read_material(document, i, textures));
   }
   if (needs_default_material(document)) out.materials.emplace_back().name = "default";
-  warn_of_black_metals(document, out.materials);
+  warn_of_metals(document, out.materials);
   if (out.materials.empty()) out.materials.emplace_back().name = "default";
   return out;
 }

@@ -10,6 +10,7 @@
 
 uniform vec4 material_base_color_factor;
 uniform float material_metallic_factor;
+uniform float material_roughness_factor;
 uniform vec3 material_emissive_radiance;  // W m^-2 sr^-1
 uniform int material_alpha_mode;
 uniform float material_alpha_cutoff;
@@ -38,14 +39,14 @@ vec4 material_fetch(sampler2D image, int texcoord, mat3 transform, vec2 uv0, vec
 #endif
 }
 
-// Diffuse albedo (baseColor * COLOR_0 * (1 - metallic), linear), and the alpha of the texture, untested.
+// Albedo (surface_albedo() of baseColor * COLOR_0, linear), and the alpha of the texture, untested.
 vec4 material_albedo_alpha(vec2 uv0, vec2 uv1, vec4 color) {
   vec4 base = material_base_color_factor * color *
               material_fetch(material_base_color_texture, material_base_color_texcoord, material_base_color_transform,
                              uv0, uv1);
-  float metallic = material_metallic_factor * material_fetch(material_metallic_texture, material_metallic_texcoord,
-                                                             material_metallic_transform, uv0, uv1).b;
-  return vec4(clamp(base.rgb * (1.0 - metallic), 0.0, 1.0), base.a);
+  vec4 texel = material_fetch(material_metallic_texture, material_metallic_texcoord, material_metallic_transform, uv0, uv1);
+  float metallic = material_metallic_factor * texel.b, roughness = material_roughness_factor * texel.g;
+  return vec4(surface_albedo(base.rgb, metallic, roughness), base.a);
 }
 
 // Radiance that the front side sends (both sides where material_double_sided).

@@ -7,6 +7,7 @@
 #include "core/log.h"
 #include "core/scene.h"
 #include "core/surface.h"
+#include "shaders/shared/material.shared.h"
 #include "tests/support/gltf_writer.h"
 
 namespace volgi {
@@ -71,7 +72,8 @@ TEST_F(SceneMaterials, FactorsAndDefaults) {
   EXPECT_TRUE(read.double_sided);
   EXPECT_TRUE(read.is_emissive());
   const SurfacePoint point = corner(scene, 0);
-  expect_near(point.albedo, {0.6f, 0.45f, 0.3f});
+  const glm::vec3 base(0.8f, 0.6f, 0.4f);
+  expect_near(point.albedo, 0.75f * base + 0.25f * shared::metal_albedo(base, 1.0f));
   expect_near(point.emission, {20, 10, 0});
   EXPECT_EQ(point.alpha, 0.0f);  // 0.5 < 0.6
   expect_near(point.geometric_normal, {0, 0, 1});
@@ -87,13 +89,30 @@ TEST_F(SceneMaterials, AlphaModes) {
   EXPECT_EQ(corner(load(), 0).alpha, 1.0f);
 }
 
-TEST_F(SceneMaterials, DefaultMetalIsBlackAndSaysSo) {
+/// A window of glass must not seal a room: what it lets pass is coverage that it has not.
+TEST_F(SceneMaterials, TransmissionIsAHole) {
+  for (const auto& [mode, alpha, passes, covers] : {std::tuple("OPAQUE", 1.0, 1.0, 0.0f),
+                                                    {"OPAQUE", 0.3, 0.75, 0.25f},
+                                                    {"BLEND", 0.5, 0.5, 0.25f},
+                                                    {"BLEND", 0.5, 0.0, 0.5f}}) {
+    writer = GltfWriter();
+    Json m = {{"name", "glass"}, {"alphaMode", mode}};
+    m["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"baseColorFactor", {1.0, 1.0, 1.0, alpha}}};
+    m["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = passes;
+    writer.push("materials", m);
+    textured_triangle({0, 0, 0, 0, 0, 0});
+    EXPECT_NEAR(corner(load(), 0).alpha, covers, 1e-6f) << mode << ' ' << passes;
+  }
+}
+
+/// Every other viewer shows what leaves out metallicFactor: it reflects what such a metal does, and says how.
+TEST_F(SceneMaterials, DefaultMetalReflectsDiffuselyAndSaysSo) {
   writer.push("materials", {{"name", "chrome"}});
   textured_triangle({0, 0, 0, 0, 0, 0});
   ::testing::internal::CaptureStderr();
   const Scene scene = load();
-  expect_near(corner(scene, 0).albedo, {0, 0, 0});
-  EXPECT_EQ(largest_albedo(scene), 0.0f);
+  expect_near(corner(scene, 0).albedo, shared::metal_albedo(glm::vec3(1.0f), 1.0f));
+  EXPECT_NEAR(largest_albedo(scene), corner(scene, 0).albedo.x, 1e-6f);
   const std::string warning = ::testing::internal::GetCapturedStderr();
   EXPECT_NE(warning.find("chrome"), std::string::npos) << warning;
 }
@@ -147,19 +166,22 @@ TEST_F(SceneMaterials, SrgbIsDecodedForColourAndNotForMetal) {
   textured_triangle({0, 0, 0, 0, 0, 0});
   const Scene scene = load();
   const float linear = srgb_decode(128.0f / 255.0f);
-  expect_near(corner(scene, 0).albedo, glm::vec3(linear * (1.0f - 0.5f * 128.0f / 255.0f)));
+  const float texel = 128.0f / 255.0f;
+  const glm::vec3 base(linear);
+  expect_near(corner(scene, 0).albedo, (1.0f - 0.5f * texel) * base + 0.5f * texel * shared::metal_albedo(base, texel));
   expect_near(corner(scene, 0).emission, glm::vec3(2.0f * linear));
   EXPECT_NEAR(largest_albedo(scene), corner(scene, 0).albedo.x, 1e-6f);
   EXPECT_EQ(scene.images.size(), 1u);
 }
 
-TEST_F(SceneMaterials, MetallicIsTheBlueChannel) {
+TEST_F(SceneMaterials, MetallicIsTheBlueChannelAndRoughnessTheGreen) {
   const std::string bytes = test::png(1, 1, {10, 20, 51, 255});
   writer.push("images", {{"uri", "data:image/png;base64," + test::base64(bytes)}});
   writer.push("textures", {{"source", 0}});
-  material({{"metallicRoughnessTexture", {{"index", 0}}}, {"metallicFactor", 1.0}});
+  material({{"metallicRoughnessTexture", {{"index", 0}}}, {"metallicFactor", 1.0}, {"roughnessFactor", 0.5}});
   textured_triangle({0, 0, 0, 0, 0, 0});
-  expect_near(corner(load(), 0).albedo, glm::vec3(0.8f));
+  const glm::vec3 metal = shared::metal_albedo(glm::vec3(1.0f), 0.5f * 20.0f / 255.0f);
+  expect_near(corner(load(), 0).albedo, 0.8f * glm::vec3(1.0f) + 0.2f * metal);
 }
 
 TEST_F(SceneMaterials, WrapModes) {
