@@ -33,8 +33,9 @@ const std::unordered_map<std::string_view, Kind>& property_kinds() {
     add(Kind::index_or_object, {"indices"});
     add(Kind::indices, {"children", "joints", "attributes"});
     add(Kind::size, {"count", "byteOffset", "byteLength", "byteStride"});
-    add(Kind::number, {"metallicFactor", "roughnessFactor", "transmissionFactor", "alphaCutoff", "intensity", "range", "innerConeAngle",
-                       "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
+    add(Kind::number,
+        {"metallicFactor", "roughnessFactor", "transmissionFactor", "alphaCutoff", "intensity", "range",
+         "innerConeAngle", "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
     add(Kind::numbers, {"translation", "matrix", "baseColorFactor", "emissiveFactor", "color", "offset"});
     add(Kind::number_or_numbers, {"rotation", "scale"});
     add(Kind::text, {"uri", "name", "mimeType", "alphaMode", "type", "interpolation", "path"});

@@ -29,8 +29,8 @@ SHARED_FUNCTION float disk_to_point(float height, float along, float facing, flo
   return apart * clamp((facing * parallel + upright) / (pi * root), 0.0f, 1.0f / max(area_m2, 1e-30f));
 }
 
-// The same to second order in the disk's radius: it errs by 1.5 % at most where `squared` is DISK_FAR_AREAS areas, and by
-// half a percent at twice that. Cheaper by a root and a division, and not bounded.
+// The same to second order in the disk's radius: it errs by 1.5 % at most where `squared` is DISK_FAR_AREAS areas, and
+// by half a percent at twice that. Cheaper by a root and a division, and not bounded.
 #define DISK_FAR_AREAS 4.0f
 SHARED_FUNCTION float disk_to_point_from_afar(float height, float along, float facing, float squared, float area_m2) {
   const float one_over_pi = 0.318309886f;

@@ -11,8 +11,8 @@ SHARED_BEGIN
 #define MATERIAL_METALLIC_UNIT 1
 #define MATERIAL_EMISSIVE_UNIT 2
 
-// What a metal reflects in all, lit evenly from everywhere: the mean directional albedo of glTF's conductor (appendix B:
-// GGX, height-correlated Smith, Schlick with F0 = baseColor), which is linear in F0. Polynomials of the perceptual
+// What a metal reflects in all, lit evenly from everywhere: the mean directional albedo of glTF's conductor (appendix
+// B: GGX, height-correlated Smith, Schlick with F0 = baseColor), which is linear in F0. Polynomials of the perceptual
 // roughness within 0.002 of an integral over visible normals (tests/core/metal_albedo_test.cpp). Single scattering, as
 // there: a rough white metal keeps 0.41.
 SHARED_FUNCTION vec3 metal_albedo(vec3 base, float roughness) {
@@ -22,8 +22,8 @@ SHARED_FUNCTION vec3 metal_albedo(vec3 base, float roughness) {
   return base * of_base + vec3(of_white);
 }
 
-// Diffuse albedo of everything that a surface reflects: a metal's mirror is spread over the hemisphere, so that it is not
-// black.
+// Diffuse albedo of everything that a surface reflects: a metal's mirror is spread over the hemisphere, so that it is
+// not black.
 SHARED_FUNCTION vec3 surface_albedo(vec3 base, float metallic, float roughness) {
   vec3 metal = metallic > 0.0f ? metal_albedo(base, roughness) : vec3(0.0f);
   vec3 albedo = base * (1.0f - metallic) + metal * metallic;

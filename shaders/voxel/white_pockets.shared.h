@@ -4,15 +4,16 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-// From here on an albedo counts as white. In a closed place a light of 1 W makes sides send 1 / (1 - albedo) W: 200 here,
-// for which conjugate gradients take some 40 passes.
+// From here on an albedo counts as white. In a closed place a light of 1 W makes sides send 1 / (1 - albedo) W: 200
+// here, for which conjugate gradients take some 40 passes.
 #define WHITE_ALBEDO 0.995f
 // What white is instead where light would stay for ever.
 #define MAX_POCKET_ALBEDO 0.95f
 
 // Bands in which a side takes light away.
 SHARED_FUNCTION uint bands_below_white(vec3 albedo) {
-  return (albedo.x < WHITE_ALBEDO ? 1u : 0u) | (albedo.y < WHITE_ALBEDO ? 2u : 0u) | (albedo.z < WHITE_ALBEDO ? 4u : 0u);
+  return (albedo.x < WHITE_ALBEDO ? 1u : 0u) | (albedo.y < WHITE_ALBEDO ? 2u : 0u) |
+         (albedo.z < WHITE_ALBEDO ? 4u : 0u);
 }
 #define ALL_BANDS 7u
 

@@ -164,8 +164,9 @@ TEST(SideGather, TurnedBoxReflectsTheSame) {
   EXPECT_NEAR(flux / double(kAlbedo * kAlbedo), 1.0, 0.02);
 }
 
-// Walls on the faces of cells, between, and through the centres, where a wall's lowest side has its middle on the floor:
-// that asked for its light at the floor's level got none from there, and all sides together 6 % too little (at half a cell).
+// Walls on the faces of cells, between, and through the centres, where a wall's lowest side has its middle on the
+// floor: that asked for its light at the floor's level got none from there, and all sides together 6 % too little (at
+// half a cell).
 TEST(SideGather, PowerDoesNotHangOnWhereWallsLieInCells) {
   Scene scene = closed_box();
   scene.lights = {lamp()};

@@ -65,7 +65,8 @@ class InterleavedGather : public GlTest {
           list(list_of(reflected, emitted)),
           area_lights({.count = 30}),  // more of them have planes that some of their lights shine behind
           maps(64, area_lights.count()),
-          shadow(screen::AreaLightShadow::make(screen::AreaLightShadow::Method::single, screen::AreaLightShadow::Filter::map, 64, area_lights.count())) {
+          shadow(screen::AreaLightShadow::make(screen::AreaLightShadow::Method::single,
+                                               screen::AreaLightShadow::Filter::map, 64, area_lights.count())) {
       area_lights.run(list.buffer, list.count(), seen.diagonal_m, seen.timer);
       maps.run(buffers, area_lights, seen.timer);
       shadow->run(maps, seen.timer);
