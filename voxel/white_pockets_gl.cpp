@@ -10,7 +10,6 @@ namespace volgi {
 
 WhitePocketsGl::WhitePocketsGl()
     : seed_(gl::Program::compute("voxel/white_pockets_seed.comp.glsl")),
-      spread_(gl::Program::compute("voxel/white_pockets_spread.comp.glsl")),
       bound_(gl::Program::compute("voxel/white_pockets_bound.comp.glsl")) {}
 
 void WhitePocketsGl::run(const VoxelGridGl& voxels, gl::PassTimer& timer) {
@@ -18,18 +17,11 @@ void WhitePocketsGl::run(const VoxelGridGl& voxels, gl::PassTimer& timer) {
   grid_ = voxels.grid;
   gl::reserve(leaving_, bytes_for(grid_));
   voxels.bind();
-  leaving_.bind_storage(LEAVING_SLOT);
+  leaving_.bind_storage(CELL_MARKS_SLOT);
   seed_.use();
   gl::dispatch_linear(cell_count(grid_), LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  spread_.use();
-  for (int step = 0; step < 3 * ROUNDS; ++step) {
-    const int axis = step % 3;
-    spread_.set("axis", axis);
-    const glm::ivec3 n = grid_.cells;
-    gl::dispatch_linear(size_t(n[shared::axis_b(axis)]) * size_t(n[shared::axis_c(axis)]), LINEAR_GROUP);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  }
+  spread_.run(voxels, leaving_, ROUNDS);
   bound_.use();
   gl::dispatch_linear(voxels.side_capacity, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

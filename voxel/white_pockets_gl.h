@@ -1,6 +1,7 @@
 #pragma once
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "voxel/cell_spread_gl.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi {
@@ -19,7 +20,8 @@ class WhitePocketsGl {
   static size_t bytes_for(const Grid& grid) { return sizeof(GLuint) * cell_count(grid); }
 
  private:
-  gl::Program seed_, spread_, bound_;
+  gl::Program seed_, bound_;
+  CellSpreadGl spread_;
   gl::Buffer leaving_;  // uint a cell: bits of bands in which light leaves it
   Grid grid_{};
 };

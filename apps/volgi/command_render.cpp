@@ -46,7 +46,7 @@ struct RenderCommand {
   int run();
 
  private:
-  std::optional<float> exposure_ev_;  // of the first picture, for all of them
+  std::optional<float> exposure_ev_;  // as asked for, or of the first picture for all of them
 
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
@@ -55,6 +55,7 @@ struct RenderCommand {
                                const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer);
   bool writes_png() const { return out.extension() == ".png"; }
   void light(Scene& loaded, const Camera& camera) const;
+  void read_exposure();
   void choose_exposure(const Image& image, const std::filesystem::path& path);
   void write_picture(const screen::Frame& picture, const std::filesystem::path& path);
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
@@ -95,15 +96,15 @@ void RenderCommand::check_outputs() const {
   check_writable(lights_file());
 }
 
-/// --exposure; what `auto` chose is said, and kept for later pictures of an animation.
+void RenderCommand::read_exposure() {
+  if (exposure == "auto") return;
+  exposure_ev_ = parse_number<float>(exposure);
+  if (!exposure_ev_) throw Error(ExitCode::usage, "--exposure " + exposure + ": takes stops, such as -1.5, or auto");
+}
+
+/// What --exposure auto chooses is said, and kept for later pictures of an animation.
 void RenderCommand::choose_exposure(const Image& image, const std::filesystem::path& path) {
   if (exposure_ev_) return;
-  if (exposure != "auto") {
-    const auto given = parse_number<float>(exposure);
-    if (!given) throw Error(ExitCode::usage, "--exposure " + exposure + ": takes stops, such as -1.5, or auto");
-    exposure_ev_ = *given;
-    return;
-  }
   exposure_ev_ = automatic_exposure_ev(image);
   if (!quiet) fmt::print("{}: --exposure {:g} (auto)\n", path.string(), double(*exposure_ev_));
 }
@@ -206,6 +207,7 @@ nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen
 
 int RenderCommand::run() {
   set_quiet(quiet);
+  read_exposure();
   frame.volume.limit_threads();
   const screen::FrameOptions options = frame.frame_options(scene.size());
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);

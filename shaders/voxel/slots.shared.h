@@ -36,7 +36,7 @@
 #define AREA_ENTRIES_SLOT 1
 #define AREA_SURFACES_SLOT 2
 
-#define LEAVING_SLOT 0  // white_pockets
+#define CELL_MARKS_SLOT 6  // cell_spread, white_pockets
 
 #define CELL_SUMS_SLOT 0  // the first
 #define NORMAL_OCCUPANCY_IMAGE 0

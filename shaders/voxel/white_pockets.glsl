@@ -5,6 +5,6 @@
 #include "voxel/grid_block.glsl"
 #include "voxel/white_pockets.shared.h"
 
-layout(std430, binding = LEAVING_SLOT) buffer Leaving { uint leaving[]; };  // bits of bands, a cell
+layout(std430, binding = CELL_MARKS_SLOT) buffer Leaving { uint leaving[]; };  // bits of bands, a cell
 
 #endif

@@ -52,6 +52,9 @@ for command in "${commands[@]}"; do
 done
 if [[ -n $gl ]]; then
   refuse 2 --scheme render "$scene" -o out.exr --scheme magic
+  refuse 2 --exposure render "$scene" -o out.exr --exposure bright
+  refuse 2 --lamp render "$scene" -o out.exr --size 8x8 --lamp 1,2,3
+  refuse 2 --sun render "$scene" -o out.exr --size 8x8 --sun up
   refuse 2 --gi render "$scene" -o out.exr --gi magic
   refuse 2 --grid render "$scene" -o out.exr --grid 0
   refuse 2 --grid render "$scene" -o out.exr --grid many

@@ -42,7 +42,7 @@ NegativeLights::NegativeLights(const NegativeLightOptions& options)
   sum_ = std::make_unique<SumInOrder>("screen/visibility/negative/negative_sum.comp.glsl", defines);
   if (options_.method != Method::sides) return;
   seed_ = gl::Program::compute("screen/visibility/negative/open_cells_seed.comp.glsl");
-  spread_ = gl::Program::compute("screen/visibility/negative/open_cells_spread.comp.glsl");
+  spread_ = std::make_unique<CellSpreadGl>();
   count_ = gl::Program::compute("screen/visibility/negative/sides_by_block_count.comp.glsl");
   scan_ = std::make_unique<gl::Scan>();
   list_ = gl::Program::compute("screen/visibility/negative/sides_by_block_list.comp.glsl");
@@ -98,15 +98,7 @@ void NegativeLights::find_open_cells(const VoxelGridGl& voxels, int light_count)
   seed_.set("light_count", light_count);
   gl::dispatch_linear(size_t(light_count), LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  spread_.use();
-  for (int round = 0; round < kSpreadRounds; ++round) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const glm::ivec3 cells = voxels.grid.cells;
-      spread_.set("axis", axis);
-      gl::dispatch_linear(cell_count(voxels.grid) / size_t(cells[axis]), LINEAR_GROUP);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    }
-  }
+  spread_->run(voxels, open_cells_, kSpreadRounds);
 }
 
 void NegativeLights::choose(const VoxelGridGl* voxels) {

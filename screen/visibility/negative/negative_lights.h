@@ -11,6 +11,7 @@
 #include "screen/base/sum_in_order.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "shaders/screen/visibility/negative/negative_light.shared.h"
+#include "voxel/cell_spread_gl.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi::screen {
@@ -57,9 +58,10 @@ class NegativeLights {
   gl::Buffer lights_;
   gl::Buffer weights_;  // of candidates (shaders/screen/visibility/negative/negative_candidates.glsl)
   gl::Buffer open_cells_, sides_by_block_, block_starts_;  // of Method::sides
-  gl::Program place_, weigh_, seed_, spread_, count_, list_;
-  std::unique_ptr<SumInOrder> sum_;  // none of Method::cochran2007
-  std::unique_ptr<gl::Scan> scan_;   // of Method::sides
+  gl::Program place_, weigh_, seed_, count_, list_;
+  std::unique_ptr<CellSpreadGl> spread_;  // of Method::sides
+  std::unique_ptr<SumInOrder> sum_;       // none of Method::cochran2007
+  std::unique_ptr<gl::Scan> scan_;        // of Method::sides
 };
 
 }  // namespace volgi::screen

@@ -257,7 +257,6 @@ TEST_F(NegativeLightsTest, ThePapersStandOnPixelsOfTheHaltonSequence) {
 /// The cells that open_cells*.comp.glsl find, as NegativeLights::run asks for them.
 std::vector<std::uint32_t> open_cells(const VoxelGridGl& voxels, const VirtualLightListGl& lights, int rounds) {
   const gl::Program seed = gl::Program::compute("screen/visibility/negative/open_cells_seed.comp.glsl");
-  const gl::Program spread = gl::Program::compute("screen/visibility/negative/open_cells_spread.comp.glsl");
   const gl::Buffer open(cell_count(voxels.grid) * sizeof(GLuint));
   open.clear();
   voxels.bind();
@@ -266,13 +265,8 @@ std::vector<std::uint32_t> open_cells(const VoxelGridGl& voxels, const VirtualLi
   seed.use();
   seed.set("light_count", lights.reflected);
   gl::dispatch_linear(size_t(lights.reflected), LINEAR_GROUP);
-  spread.use();
-  for (int i = 0; i < 3 * rounds; ++i) {
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    spread.set("axis", i % 3);
-    const glm::ivec3 cells = voxels.grid.cells;
-    gl::dispatch_linear(size_t(cells.x * cells.y * cells.z / cells[i % 3]), LINEAR_GROUP);
-  }
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  CellSpreadGl().run(voxels, open, rounds);
   return open.download<std::uint32_t>(cell_count(voxels.grid));
 }
 

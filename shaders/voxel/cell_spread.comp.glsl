@@ -1,11 +1,13 @@
 #version 450 core
-// Open cells make those open that follow them along an axis, both ways, up to faces that stop everything. One thread a
-// column.
+// Cells pass their marks, bits each, to those that follow them along an axis, both ways, up to faces that stop
+// everything. One thread a column.
 #include "shared/global_index.shared.h"
-#include "screen/visibility/negative/open_cells.glsl"
 #include "shared/group_sizes.shared.h"
+#include "voxel/cell_sides.glsl"
+#include "voxel/grid_block.glsl"
 
 layout(local_size_x = LINEAR_GROUP) in;
+layout(std430, binding = CELL_MARKS_SLOT) buffer Marks { uint marks[]; };
 uniform int axis;
 
 void main() {
@@ -16,12 +18,13 @@ void main() {
   cell[b] = column % grid.cells[b];
   cell[c] = column / grid.cells[b];
   for (int way = 1; way >= -1; way -= 2) {
-    bool open = false;
+    uint passed = 0u;
     for (int i = 0; i < grid.cells[axis]; ++i) {
       cell[axis] = way > 0 ? i : grid.cells[axis] - 1 - i;
       int index = cell_index(grid, cell);
-      if (open) open_cells[index] = 1u;
-      open = open_cells[index] != 0u && !face_is_opaque(cell, face_of(axis, way > 0));
+      passed |= marks[index];
+      marks[index] = passed;
+      if (is_opaque(cell_sides[index], face_of(axis, way > 0))) passed = 0u;
     }
   }
 }
