@@ -93,6 +93,7 @@ Material matt(const char* name, glm::vec3 albedo) {
   m.name = name;
   m.base_color_factor = glm::vec4(albedo, 1.0f);
   m.metallic_factor = 0.0f;
+  m.specular_factor = 0.0f;
   return m;
 }
 

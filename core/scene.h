@@ -47,10 +47,14 @@ enum class AlphaMode { opaque, mask, blend };
 struct Material {
   std::string name;
   glm::vec4 base_color_factor{1.0f};
-  TextureUse base_color;              // sRGB
-  float metallic_factor = 1.0f;       // glTF's default
-  float roughness_factor = 1.0f;      // glTF's default
-  TextureUse metallic;                // linear: blue metallic, green roughness
+  TextureUse base_color;          // sRGB
+  float metallic_factor = 1.0f;   // glTF's default
+  float roughness_factor = 1.0f;  // glTF's default
+  TextureUse metallic;            // linear: blue metallic, green roughness
+  // KHR_materials_specular and KHR_materials_ior: what mirrors on surfaces that are no metal. Factor 0: nothing does.
+  float specular_factor = 1.0f;
+  glm::vec3 specular_color_factor{1.0f};
+  float ior = 1.5f;                   // refractive index, at least 1; or 0: mirrors all light at any angle
   glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
   TextureUse emissive;                // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;

@@ -67,6 +67,9 @@ void add(Hash& hash, const Material& material) {
   hash.add(material.metallic_factor);
   hash.add(material.roughness_factor);
   hash.add(material.metallic);
+  hash.add(material.specular_factor);
+  hash.add(material.specular_color_factor);
+  hash.add(material.ior);
   hash.add(material.emissive_radiance);
   hash.add(material.emissive);
   hash.add(material.alpha_mode);

@@ -14,9 +14,9 @@ using Json = nlohmann::json;
 
 constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
 
-const std::set<std::string_view> supported_extensions = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                         "KHR_materials_transmission", "KHR_texture_transform",
-                                                         "KHR_mesh_quantization"};
+const std::set<std::string_view> supported_extensions = {
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_texture_transform",           "KHR_mesh_quantization"};
 
 enum class Kind { index, index_or_object, indices, size, number, numbers, number_or_numbers, text, flag, object, list };
 
@@ -34,14 +34,16 @@ const std::unordered_map<std::string_view, Kind>& property_kinds() {
     add(Kind::indices, {"children", "joints", "attributes"});
     add(Kind::size, {"count", "byteOffset", "byteLength", "byteStride"});
     add(Kind::number,
-        {"metallicFactor", "roughnessFactor", "transmissionFactor", "alphaCutoff", "intensity", "range",
-         "innerConeAngle", "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
-    add(Kind::numbers, {"translation", "matrix", "baseColorFactor", "emissiveFactor", "color", "offset"});
+        {"metallicFactor", "roughnessFactor", "specularFactor", "ior", "transmissionFactor", "alphaCutoff", "intensity",
+         "range", "innerConeAngle", "outerConeAngle", "yfov", "znear", "zfar", "xmag", "ymag", "emissiveStrength"});
+    add(Kind::numbers,
+        {"translation", "matrix", "baseColorFactor", "emissiveFactor", "specularColorFactor", "color", "offset"});
     add(Kind::number_or_numbers, {"rotation", "scale"});
     add(Kind::text, {"uri", "name", "mimeType", "alphaMode", "type", "interpolation", "path"});
     add(Kind::flag, {"doubleSided", "normalized"});
-    add(Kind::object, {"pbrMetallicRoughness", "baseColorTexture", "metallicRoughnessTexture", "emissiveTexture",
-                       "sparse", "values", "spot", "perspective", "orthographic", "extensions"});
+    add(Kind::object,
+        {"pbrMetallicRoughness", "baseColorTexture", "metallicRoughnessTexture", "emissiveTexture", "specularTexture",
+         "specularColorTexture", "sparse", "values", "spot", "perspective", "orthographic", "extensions"});
     add(Kind::list, {"accessors", "animations", "buffers", "bufferViews", "cameras", "images", "materials", "meshes",
                      "nodes", "samplers", "scenes", "skins", "textures", "primitives", "channels", "lights"});
     return k;

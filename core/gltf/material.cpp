@@ -27,6 +27,37 @@ glm::vec3 read_emission(const Document& document, const tinygltf::Material& in, 
   return factor * in_range(document, strength, 0.0, largest_strength, who, "emissiveStrength");
 }
 
+/// The value of an extension's property, if the file has both.
+const tinygltf::Value* find(const tinygltf::Material& in, const char* extension, const char* property) {
+  const auto found = in.extensions.find(extension);
+  return found != in.extensions.end() && found->second.Has(property) ? &found->second.Get(property) : nullptr;
+}
+
+void read_specular(const Document& document, const tinygltf::Material& in, const std::string& who, Material& material) {
+  constexpr double largest_color = 1e6;  // the extension sets no limit
+  constexpr const char* extension = "KHR_materials_specular";
+  if (const tinygltf::Value* factor = find(in, extension, "specularFactor"))
+    material.specular_factor = in_range(document, factor->GetNumberAsDouble(), 0.0, 1.0, who, "specularFactor");
+  if (const tinygltf::Value* color = find(in, extension, "specularColorFactor")) {
+    if (color->ArrayLen() != 3) refuse(document.path, fmt::format("{}: specularColorFactor needs three numbers", who));
+    for (int c = 0; c < 3; ++c)
+      material.specular_color_factor[c] =
+          in_range(document, color->Get(c).GetNumberAsDouble(), 0.0, largest_color, who, "specularColorFactor");
+  }
+  for (const char* texture : {"specularTexture", "specularColorTexture"})
+    if (find(in, extension, texture) != nullptr) warn(document.path, "specular textures are ignored");
+}
+
+void read_ior(const Document& document, const tinygltf::Material& in, const std::string& who, Material& material) {
+  constexpr double largest_ior = 1e6;  // the extension sets no limit
+  const tinygltf::Value* value = find(in, "KHR_materials_ior", "ior");
+  if (value == nullptr) return;
+  const double ior = value->GetNumberAsDouble();
+  if (ior != 0.0 && !(ior >= 1.0 && ior <= largest_ior))
+    refuse(document.path, fmt::format("{}: ior is {}, neither 0 nor inside 1 ... {}", who, ior, largest_ior));
+  material.ior = float(ior);
+}
+
 /// KHR_materials_transmission: the share of light that passes, not bent and not coloured, as through a hole; the
 /// surface covers the rest.
 void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
@@ -63,6 +94,8 @@ Material read_material(const Document& document, size_t index, TextureTable& tex
   material.metallic_factor = in_range(document, pbr.metallicFactor, 0.0, 1.0, who, "metallicFactor");
   material.roughness_factor = in_range(document, pbr.roughnessFactor, 0.0, 1.0, who, "roughnessFactor");
   material.metallic = textures.use(pbr.metallicRoughnessTexture, who + " metallicRoughnessTexture");
+  read_specular(document, in, who, material);
+  read_ior(document, in, who, material);
   material.emissive_radiance = read_emission(document, in, who);
   material.emissive = textures.use(in.emissiveTexture, who + " emissiveTexture");
   material.alpha_mode = read_alpha_mode(document, in.alphaMode, who);

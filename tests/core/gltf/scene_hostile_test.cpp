@@ -203,6 +203,18 @@ TEST_F(Hostile, PropertiesOfAWrongType) {
   expect_change_refused("/accessors/0/type", 3, "accessors[0].type");
 }
 
+TEST_F(Hostile, SpecularOutOfRange) {
+  const std::string specular = "/materials/0/extensions/KHR_materials_specular";
+  for (const char* factor : {"-0.1", "1.1", "1e300"})
+    expect_change_refused(specular + "/specularFactor", Json::parse(factor), "material 0 'paint': specularFactor is");
+  expect_change_refused(specular + "/specularFactor", "1", "must be a number");
+  expect_change_refused(specular + "/specularColorFactor", {1, -1, 1}, "specularColorFactor is -1");
+  expect_change_refused(specular + "/specularColorFactor", {1, 1}, "needs three numbers");
+  expect_change_refused(specular + "/specularColorFactor", 1, "must be a list of numbers");
+  for (const char* ior : {"-1", "0.99", "1e300"})
+    expect_change_refused("/materials/0/extensions/KHR_materials_ior/ior", Json::parse(ior), "paint': ior is");
+}
+
 TEST_F(Hostile, AccessorsOutsideTheirData) {
   expect_change_refused("/accessors/0/count", 5, "accessor 0");
   expect_change_refused("/accessors/0/count", -4, "count");

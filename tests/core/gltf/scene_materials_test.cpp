@@ -105,6 +105,41 @@ TEST_F(SceneMaterials, TransmissionIsAHole) {
   }
 }
 
+TEST_F(SceneMaterials, SpecularAndRefractiveIndex) {
+  material();
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  const Material defaults = load().materials[0];
+  EXPECT_EQ(defaults.specular_factor, 1.0f);
+  EXPECT_EQ(defaults.specular_color_factor, glm::vec3(1.0f));
+  EXPECT_EQ(defaults.ior, 1.5f);
+
+  Json& extensions = writer.root["materials"][0]["extensions"];
+  extensions["KHR_materials_specular"] = {{"specularFactor", 0}, {"specularColorFactor", {0.5, 0, 2}}};
+  extensions["KHR_materials_ior"]["ior"] = 1.33;
+  writer.root["extensionsUsed"] = {"KHR_materials_specular", "KHR_materials_ior"};
+  writer.root["extensionsRequired"] = writer.root["extensionsUsed"];
+  ::testing::internal::CaptureStderr();
+  const Material read = load().materials[0];
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(read.specular_factor, 0.0f);
+  EXPECT_EQ(read.specular_color_factor, glm::vec3(0.5f, 0.0f, 2.0f));
+  EXPECT_EQ(read.ior, 1.33f);
+  extensions["KHR_materials_ior"]["ior"] = 0;
+  EXPECT_EQ(load().materials[0].ior, 0.0f);
+}
+
+TEST_F(SceneMaterials, SpecularTexturesAreIgnored) {
+  material()["extensions"]["KHR_materials_specular"] = {{"specularTexture", {{"index", 0}}},
+                                                        {"specularColorTexture", {{"index", 0}}}};
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  ::testing::internal::CaptureStderr();
+  EXPECT_TRUE(load().textures.empty());
+  const std::string warning = ::testing::internal::GetCapturedStderr();
+  const size_t first = warning.find("specular textures");
+  ASSERT_NE(first, std::string::npos) << warning;
+  EXPECT_EQ(warning.find("specular textures", first + 1), std::string::npos) << warning;
+}
+
 /// Every other viewer shows what leaves out metallicFactor: it reflects what such a metal does, and says how.
 TEST_F(SceneMaterials, DefaultMetalReflectsDiffuselyAndSaysSo) {
   writer.push("materials", {{"name", "chrome"}});
