@@ -52,6 +52,9 @@ def _materials(loaded):
     for material in loaded.document['materials']:
         if material['pbrMetallicRoughness'].get('metallicFactor') != 0.0:
             yield '%s: metallicFactor is not 0, its diffuse albedo is not its colour' % material['name']
+        specular = material.get('extensions', {}).get('KHR_materials_specular', {})
+        if specular.get('specularFactor') != 0:
+            yield '%s: specularFactor is not 0, it is not Lambertian' % material['name']
     for part in loaded.parts:
         pbr = part['material']['pbrMetallicRoughness']
         if part['uvs'] is None and ('baseColorTexture' in pbr or 'emissiveTexture' in part['material']):

@@ -5,7 +5,8 @@ import struct
 
 from . import vec
 
-EXTENSIONS = ('KHR_lights_punctual', 'KHR_materials_emissive_strength', 'KHR_texture_transform')
+EXTENSIONS = ('KHR_lights_punctual', 'KHR_materials_emissive_strength', 'KHR_materials_specular',
+              'KHR_texture_transform')
 COMPONENTS = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4}
 FORMATS = {5126: 'f', 5125: 'I', 5123: 'H'}
 
@@ -63,9 +64,10 @@ class Scene:
     def material(self, name, albedo, radiance=None, texture=None, uv_scale=None, uv_offset=None,
                  emissive_texture=None):
         """albedo: linear RGB; radiance: emitted RGB [W m^-2 sr^-1], one-sided; uv_scale: KHR_texture_transform."""
-        # metallicFactor defaults to 1 in glTF, which is a black diffuse surface: always written.
+        # glTF's defaults are a metal, and on what is none a specular lobe of 4 %: these surfaces are Lambertian.
         pbr = {'baseColorFactor': _rounded(albedo) + [1.0], 'metallicFactor': 0.0, 'roughnessFactor': 1.0}
-        material = {'name': name, 'pbrMetallicRoughness': pbr}
+        extensions = {'KHR_materials_specular': {'specularFactor': 0.0}}
+        material = {'name': name, 'pbrMetallicRoughness': pbr, 'extensions': extensions}
         if texture is not None:
             pbr['baseColorTexture'] = use = {'index': texture}
             if uv_scale or uv_offset:
@@ -77,7 +79,7 @@ class Scene:
             material['emissiveFactor'] = _rounded(c / strength for c in radiance)
             if emissive_texture is not None:
                 material['emissiveTexture'] = {'index': emissive_texture}
-            material['extensions'] = {'KHR_materials_emissive_strength': {'emissiveStrength': strength}}
+            extensions['KHR_materials_emissive_strength'] = {'emissiveStrength': strength}
         self.material_index[name] = len(self.materials)
         self.materials.append(material)
         return name
