@@ -15,6 +15,7 @@ enum class Region {
   noedge,  // hit, and no edge of geometry or of direct shadow among the 3x3 neighbours
   shadow,  // noedge, and no direct light there
   lit,     // noedge, and direct light there
+  shade,   // noedge, and no punctual light arrives there (a sky or emitters may light it)
 };
 std::string_view name(Region region);
 std::optional<Region> region_from_name(std::string_view name);
@@ -25,8 +26,12 @@ using Mask = std::vector<char>;  // width * height, 0 or 1
 struct RegionLayers {
   Image position, normal, direct;
   std::vector<float> id, depth;
+  /// Bit k: punctual light k reaches the pixel. Empty where a reference does not say it: direct light is then taken to
+  /// come from such lights alone, without noise.
+  std::vector<float> lit{};
+  Image direct_noise{};  // half the difference of the halves of `direct`; read with `lit` only
 };
-/// Cost: 27 comparisons a pixel. Source: compare.py of the reference images, regions().
+/// Cost: 35 comparisons a pixel. Source: compare.py of the reference images, regions().
 Mask region_mask(Region region, const RegionLayers& layers);
 
 /// How far a picture is from its reference. Percentages are of the reference's mean over the region and R, G, B.

@@ -30,6 +30,13 @@ const std::vector<float>& plane(const ChannelImage& image, const fs::path& path,
   return found->values;
 }
 
+// Which lights reach a pixel, as our files call it or as Blender's do; empty where a file does not say it.
+std::vector<float> lit_plane(const ChannelImage& image) {
+  for (const char* name : {"lit", "Lit.V"})
+    if (const Channel* found = image.find(name)) return found->values;
+  return {};
+}
+
 Image layer(const ChannelImage& image, const fs::path& path, std::string_view prefix) {
   Image out;
   if (!image.rgb(prefix, out))
@@ -63,7 +70,8 @@ ReferenceFile from_own(const ChannelImage& image, const fs::path& path, AskedLig
   ColorAndNoise direct{layer(image, path, without_direct ? "left_out.direct." : "direct."),
                        layer(image, path, "direct_noise.")};
   RegionLayers layers{layer(image, path, "position."), layer(image, path, "normal."), direct.color,
-                      plane(image, path, "id"), plane(image, path, "depth")};
+                      plane(image, path, "id"),        plane(image, path, "depth"),   lit_plane(image),
+                      direct.noise.value_or(Image())};
   if (without_direct && light == AskedLight::indirect) light = AskedLight::full;
   ColorAndNoise selected = select(light, std::move(picture), std::move(direct));
   return {std::move(selected.color), std::move(selected.noise), std::move(layers)};
@@ -78,13 +86,18 @@ ColorAndNoise read_with_noise(const fs::path& path) {
   return out;
 }
 
-std::optional<RegionLayers> blender_layers(const fs::path& path, const Image& direct) {
+std::optional<RegionLayers> blender_layers(const fs::path& path, const ColorAndNoise& direct) {
   const fs::path aov_path = path.parent_path() / "aov.exr";
   if (!fs::exists(aov_path)) return std::nullopt;
   const ChannelImage aov = read_exr(aov_path);
-  RegionLayers layers{layer(aov, aov_path, "Position."), layer(aov, aov_path, "Normal."), direct,
-                      plane(aov, aov_path, "IndexOB.X"), plane(aov, aov_path, "Depth.Z")};
-  require_same_size(layers.position, aov_path, direct, path);
+  RegionLayers layers{layer(aov, aov_path, "Position."), layer(aov, aov_path, "Normal."), direct.color,
+                      plane(aov, aov_path, "IndexOB.X"), plane(aov, aov_path, "Depth.Z"), lit_plane(aov),
+                      direct.noise.value_or(Image())};
+  require_same_size(layers.position, aov_path, direct.color, path);
+  if (!layers.lit.empty() && !direct.noise)
+    throw Error(ExitCode::bad_input,
+                fmt::format("{} has Lit.V, which goes with {}, and there is no such file", aov_path.string(),
+                            (path.parent_path() / "direct_noise.exr").string()));
   return layers;
 }
 
@@ -98,7 +111,7 @@ ReferenceFile from_folder(const fs::path& path, AskedLight light) {
   }
   ColorAndNoise direct = read_with_noise(direct_path);
   require_same_size(direct.color, direct_path, picture.color, path);
-  std::optional<RegionLayers> layers = blender_layers(path, direct.color);
+  std::optional<RegionLayers> layers = blender_layers(path, direct);
   ColorAndNoise selected = select(light, std::move(picture), std::move(direct));
   return {std::move(selected.color), std::move(selected.noise), std::move(layers)};
 }

@@ -7,7 +7,7 @@
 namespace volgi {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"all", "hit", "noedge", "shadow", "lit"};
+constexpr std::array<std::string_view, 6> kNames{"all", "hit", "noedge", "shadow", "lit", "shade"};
 
 // Calls f(neighbour) for the 8 around a pixel; outside the picture its edge is repeated.
 template <class F>
@@ -32,7 +32,54 @@ bool smooth_geometry(const RegionLayers& l, int x, int y, size_t i) {
   return smooth;
 }
 
-double channel_sum(glm::vec3 c) { return static_cast<double>(c.x + c.y + c.z); }  // single precision, as numpy's
+// Least and largest direct light of a pixel and its neighbours. Single precision, as numpy's.
+struct DirectRange {
+  float low, high;
+};
+
+DirectRange direct_range(const Image& direct, int x, int y) {
+  const auto sum = [](glm::vec3 c) { return c.x + c.y + c.z; };
+  DirectRange range{sum(direct.at(x, y)), sum(direct.at(x, y))};
+  for_neighbours(x, y, direct.width, direct.height, [&](size_t q) {
+    range.low = std::min(range.low, sum(direct.pixels[q]));
+    range.high = std::max(range.high, sum(direct.pixels[q]));
+  });
+  return range;
+}
+
+// Differences of direct light up to this are noise: five times the RMS over 5x5 pixels.
+double noise_tolerance(const Image& noise, int x, int y) {
+  double squares = 0;
+  for (int dy = -2; dy <= 2; ++dy)
+    for (int dx = -2; dx <= 2; ++dx) {
+      const glm::dvec3 n(noise.at(std::clamp(x + dx, 0, noise.width - 1), std::clamp(y + dy, 0, noise.height - 1)));
+      squares += (n.x + n.y + n.z) * (n.x + n.y + n.z);
+    }
+  return 5 * std::sqrt(squares / 25);
+}
+
+bool shadow_edge(const RegionLayers& l, int x, int y, size_t i, DirectRange direct) {
+  double tolerance = 0.35f * std::max(direct.high, 1e-12f);
+  bool other_lights = false;
+  if (!l.lit.empty()) {
+    tolerance += noise_tolerance(l.direct_noise, x, y);
+    for_neighbours(x, y, l.direct.width, l.direct.height,
+                   [&](size_t q) { other_lights = other_lights || std::round(l.lit[q]) != std::round(l.lit[i]); });
+  }
+  return other_lights || direct.high - direct.low > tolerance;
+}
+
+bool in_region(Region region, const RegionLayers& l, int x, int y, size_t i) {
+  if (region == Region::all) return true;
+  if (!(std::round(l.id[i]) > 0)) return false;
+  if (region == Region::hit) return true;
+  const DirectRange direct = direct_range(l.direct, x, y);
+  if (!smooth_geometry(l, x, y, i) || shadow_edge(l, x, y, i, direct)) return false;
+  if (region == Region::shadow) return direct.high == 0;
+  if (region == Region::lit) return direct.low > 0;
+  if (region == Region::shade) return l.lit.empty() ? direct.high == 0 : std::round(l.lit[i]) == 0;
+  return true;
+}
 
 }  // namespace
 
@@ -46,23 +93,11 @@ std::optional<Region> region_from_name(std::string_view name) {
 
 Mask region_mask(Region region, const RegionLayers& layers) {
   const int width = layers.direct.width, height = layers.direct.height;
-  Mask mask(layers.direct.pixels.size(), 1);
-  if (region == Region::all) return mask;
+  Mask mask(layers.direct.pixels.size());
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-      mask[i] = std::round(layers.id[i]) > 0;
-      if (region == Region::hit || mask[i] == 0) continue;
-      double low = channel_sum(layers.direct.pixels[i]), high = low;
-      for_neighbours(x, y, width, height, [&](size_t q) {
-        const double sum = channel_sum(layers.direct.pixels[q]);
-        low = std::min(low, sum);
-        high = std::max(high, sum);
-      });
-      const bool shadow_edge = high - low > 0.35 * std::max(high, 1e-12);
-      mask[i] = smooth_geometry(layers, x, y, i) && !shadow_edge;
-      if (region == Region::shadow) mask[i] = mask[i] != 0 && high == 0;
-      if (region == Region::lit) mask[i] = mask[i] != 0 && low > 0;
+      mask[i] = in_region(region, layers, x, y, i);
     }
   return mask;
 }

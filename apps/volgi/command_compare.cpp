@@ -174,7 +174,8 @@ int compare(const CompareOptions& options) {
   check_maps(options);
   const ReferenceFile reference = read_reference(options.reference, light_from_name(options.light));
   const Region region = requested_region(options, reference);
-  const Mask mask = reference.layers ? region_mask(region, *reference.layers) : Mask(reference.color.pixels.size(), 1);
+  const Mask everywhere(reference.color.pixels.size(), 1);
+  const Mask mask = reference.layers ? region_mask(region, *reference.layers) : everywhere;
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string table, failures;
   for (const std::filesystem::path& path : options.tests) {
@@ -187,8 +188,8 @@ int compare(const CompareOptions& options) {
     json["region"] = std::string(name(region));
     json.update(to_json(m));
     json["failed"] = broken;
-    results.push_back(json);
     table += table_row(m, path.string());
+    results.push_back(json);
     if (!options.diff.empty()) write_png_display(map_path(options, path), error_map(reference.color, test, mask));
   }
   if (options.json)
@@ -206,6 +207,8 @@ constexpr const char* kFooter =
 blk% RMS error of 16x16 block means; * with the reference's own noise taken out. A REF is an EXR of `volgi reference`,
 or DIR/full.exr with full_noise.exr, direct.exr and aov.exr beside it. Exit code 1 when a limit is broken, or a limit is
 given and a pixel is not finite.
+Regions: all; hit, where geometry is seen; noedge, hit without edges of geometry or of shadows; of noedge, shadow has no
+direct light and lit has, and no punctual light reaches shade.
 Example: volgi compare data/reference/ref/cornell/full.exr mine.exr --max-blk-percent 2 --energy 0.99:1.01)";
 
 }  // namespace
@@ -216,7 +219,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command.add_option("REF", options->reference, "reference EXR")->required();
   command.add_option("TEST", options->tests, "EXR pictures of REF's size or an integer multiple of it")->required();
   command.add_option("--region", options->region, "pixels that count [noedge]")
-      ->check(CLI::IsMember({"all", "hit", "noedge", "shadow", "lit"}));
+      ->check(CLI::IsMember({"all", "hit", "noedge", "shadow", "lit", "shade"}));
   command
       .add_option("--light", options->light,
                   "light that is compared; a TEST without direct layer is that light already")

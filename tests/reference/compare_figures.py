@@ -24,7 +24,7 @@ def p95(r, t, mask):
     return np.percentile(100 * np.abs(lt - lr) / np.maximum(lr, 0.05 * lr.mean()), 95)
 
 
-for scene in ('cornell', 'room', 'thin_wall'):
+for scene in ('cornell', 'room', 'thin_wall', 'sky_court', 'area_tv', 'metal_box'):
     folder = os.path.join(ROOT, 'ref', scene)
     full, full_noise = compare.load_ref(os.path.join(folder, 'full.exr'))
     direct, direct_noise = compare.load_ref(os.path.join(folder, 'direct.exr'))

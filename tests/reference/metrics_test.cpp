@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -65,7 +66,8 @@ std::map<std::string, double> figures(const Metrics& m) {
   return out;
 }
 
-// Checks every line "scene light region key value"; relative 1e-4, and 1e-9 where a figure is a difference of sums.
+// Checks every line "scene light region key value"; relative 1e-4, and 1e-9 where a figure is a difference of sums. A
+// region is the same to the pixel.
 void expect_figures(std::istream& lines) {
   std::string scene, light, region, key, value, last;
   std::map<std::string, double> own;
@@ -80,7 +82,9 @@ void expect_figures(std::istream& lines) {
     }
     ASSERT_TRUE(own.contains(key)) << which << " " << key;
     const double expected = std::strtod(value.c_str(), nullptr);
-    if (std::isnan(expected)) {
+    if (key == "pixels") {
+      EXPECT_EQ(own[key], expected) << which;
+    } else if (std::isnan(expected)) {
       EXPECT_TRUE(std::isnan(own[key])) << which << " " << key;
     } else {
       EXPECT_NEAR(own[key], expected, 1e-4 * std::abs(expected) + 1e-9) << which << " " << key;
@@ -170,6 +174,47 @@ TEST(Compare, EmptyRegion) {
   const Metrics m = measure(ref, ref, nullptr, Mask(64, 0));
   EXPECT_EQ(m.pixels, 0);
   EXPECT_FALSE(m.relative);
+}
+
+// A wall that a lamp lights evenly, but for the columns from `shadow_from` on, where other light is as bright.
+RegionLayers wall(int size, int shadow_from) {
+  RegionLayers l;
+  const auto pixels = static_cast<size_t>(size * size);
+  l.position = l.direct_noise = Image(size, size);
+  l.normal = Image(size, size, {0, 0, 1});
+  l.direct = Image(size, size, glm::vec3(1.0f));
+  l.id.assign(pixels, 1.0f);
+  l.depth.assign(pixels, 1.0f);
+  for (size_t i = 0; i < pixels; ++i) l.lit.push_back(static_cast<int>(i) % size < shadow_from ? 1.0f : 0.0f);
+  return l;
+}
+
+int pixels(Region region, const RegionLayers& layers) {
+  const Mask mask = region_mask(region, layers);
+  return static_cast<int>(std::count(mask.begin(), mask.end(), 1));
+}
+
+TEST(Regions, BordersOfWhatLightsReachAreEdges) {
+  RegionLayers l = wall(16, 6);
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 14);
+  EXPECT_EQ(pixels(Region::shade, l), 16 * 9);
+  EXPECT_EQ(pixels(Region::shadow, l), 0) << "other light is there";
+  l.lit.clear();
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 16);
+  EXPECT_EQ(pixels(Region::shade, l), 0) << "all direct light is taken to be that of lamps";
+}
+
+TEST(Regions, NoiseOfDirectLightIsNoEdge) {
+  RegionLayers l = wall(16, 16);
+  l.direct.at(8, 8) = glm::vec3(0.5f);
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 16 - 9);
+  // The rule: 5 times the RMS of the noise must reach 1.5 - 0.35 * 3 = 0.45 in the sum of R, G, B.
+  l.direct_noise = Image(16, 16, glm::vec3(0.02f));
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 16 - 9);
+  l.direct_noise = Image(16, 16, glm::vec3(0.04f));
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 16);
+  l.lit.clear();
+  EXPECT_EQ(pixels(Region::noedge, l), 16 * 16 - 9) << "without `lit` light has no noise";
 }
 
 TEST(Compare, LargerPicturesAreBoxFiltered) {
