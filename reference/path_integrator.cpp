@@ -121,6 +121,23 @@ glm::vec3 PathIntegrator::all_punctual(const PathVertex& vertex, PathSampler& sa
   return sum;
 }
 
+std::uint32_t PathIntegrator::lights_reaching(const PathVertex& vertex, std::uint32_t alpha_seed) const {
+  constexpr size_t bits_in_float = 24;
+  std::uint32_t bits = 0;
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    const shared::PunctualLight& light = lights_[i];
+    glm::vec3 to_light;
+    const glm::vec3 irradiance = shared::perpendicular_irradiance(light, vertex.surface.position, to_light);
+    const float distance = light.type == LIGHT_DIRECTIONAL ? std::numeric_limits<float>::infinity()
+                                                           : glm::length(light.position - vertex.surface.position);
+    const bool faces_it =
+        glm::dot(vertex.shading_normal, to_light) > 0.0f && glm::dot(vertex.geometric_normal, to_light) > 0.0f;
+    if (faces_it && irradiance != glm::vec3(0.0f) && visible(vertex, to_light, distance, alpha_seed))
+      bits |= 1u << i % bits_in_float;
+  }
+  return bits;
+}
+
 // One light, chosen in proportion to what it would send unshadowed (a reservoir of one, so lights are read once).
 glm::vec3 PathIntegrator::one_punctual(const PathVertex& vertex, PathSampler& sampler) const {
   float xi = sampler.next1(), total = 0.0f, chosen_weight = 0.0f, chosen_distance = 0.0f;

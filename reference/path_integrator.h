@@ -50,6 +50,9 @@ class PathIntegrator {
 
   /// What `vertex` reflects of every punctual light, a shadow ray each.
   glm::vec3 all_punctual(const PathVertex& vertex, PathSampler& sampler) const;
+  /// Which punctual lights reach a surface, whatever it reflects of them: bit k for light k. 24 bits, which a float
+  /// holds exactly; lights from 24 on share them (k mod 24). BLEND is seen through by the chance of `alpha_seed`.
+  std::uint32_t lights_reaching(const PathVertex& vertex, std::uint32_t alpha_seed) const;
   const EmbreeScene& rays() const { return rays_; }
   /// Other punctual lights than the scene's, such as the same ones at another time. Not while paths are traced.
   void set_lights(const std::vector<Light>& lights);

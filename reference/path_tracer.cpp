@@ -26,13 +26,18 @@ class PictureTracer {
         options_(options),
         tracer_(scene, camera, options),
         samples_per_half_(std::max(1, (options.samples_per_pixel + 1) / 2)),
-        picture_(empty_picture(options.size, options.light)) {}
+        picture_(empty_picture(options.size, options.light)) {
+    picture_.lit.assign(picture_.color.pixels.size(), 0.0f);
+  }
 
   void trace_pixel(int x, int y) {
     CameraRay ray;
     PathVertex centre;
     const bool hit = tracer_.centre({x, y}, ray, centre);
-    if (hit) write_first_hit(picture_, {x, y}, scene_, camera_, ray, centre);
+    if (hit) {
+      write_first_hit(picture_, {x, y}, scene_, camera_, ray, centre);
+      picture_.lit[size_t(y) * size_t(options_.size.x) + size_t(x)] = float(tracer_.lights_reaching(centre));
+    }
     const bool known = tracer_.starts_at_centre();
     if (known && !hit) return;
     std::array<LightSum, 2> halves;
@@ -87,6 +92,7 @@ ChannelImage to_channels(const ReferencePicture& picture) {
   out.add_rgb("albedo.", picture.albedo);
   out.channels.push_back({"id", picture.id});
   out.channels.push_back({"depth", picture.depth});
+  if (!picture.lit.empty()) out.channels.push_back({"lit", picture.lit});
   return out;
 }
 

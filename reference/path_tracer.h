@@ -27,6 +27,7 @@ struct ReferencePicture {
   Image position, normal, albedo;  // of the first hit at the pixel's centre; position in the file's world frame, normal
                                    // to the camera's side
   std::vector<float> id, depth;    // Mesh::object_id (0: nothing); distance along the view axis [m]
+  std::vector<float> lit;          // PathIntegrator::lights_reaching() there; empty where nobody asked
 };
 
 /// Path tracing with next-event estimation towards punctual and emissive lights (multiple importance sampling with the
@@ -35,8 +36,8 @@ struct ReferencePicture {
 ReferencePicture path_trace(const Scene& scene, const Camera& camera, const PathTracerOptions& options);
 
 /// Layers as channels: R,G,B; direct.RGB; noise.RGB = (half_a - half_b)/2; direct_noise.RGB likewise; position.XYZ;
-/// normal.XYZ; albedo.RGB; id; depth. Where R,G,B leave out the direct light (Light::indirect) its layer is called
-/// left_out.direct instead.
+/// normal.XYZ; albedo.RGB; id; depth; lit, unless empty. Where R,G,B leave out the direct light (Light::indirect) its
+/// layer is called left_out.direct instead.
 ChannelImage to_channels(const ReferencePicture& picture);
 
 }  // namespace volgi

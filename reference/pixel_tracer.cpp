@@ -3,6 +3,9 @@
 namespace volgi {
 
 using AskedLight = PathTracerOptions::Light;
+namespace {
+constexpr std::uint32_t kCentre = 0x5eed;  // chance of what is at pixels' centres, apart from that of samples
+}
 
 glm::dvec3 asked_for(const LightSum& sum, AskedLight light) {
   if (light == AskedLight::direct) return sum.direct;
@@ -18,7 +21,11 @@ PixelTracer::PixelTracer(const Scene& scene, const Camera& camera, const PathTra
 
 bool PixelTracer::centre(glm::ivec2 pixel, CameraRay& ray, PathVertex& vertex) const {
   ray = camera_ray(camera_, glm::vec2(pixel) + 0.5f, options_.size);
-  return integrator_.first_vertex(ray, hash(options_.seed, 0x5eedu), vertex);
+  return integrator_.first_vertex(ray, hash(options_.seed, kCentre), vertex);
+}
+
+std::uint32_t PixelTracer::lights_reaching(const PathVertex& vertex) const {
+  return integrator_.lights_reaching(vertex, hash(options_.seed, kCentre));
 }
 
 void PixelTracer::add_samples(glm::ivec2 pixel, const PathVertex* known, std::uint32_t point_set, int first, int count,

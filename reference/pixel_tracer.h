@@ -20,6 +20,8 @@ class PixelTracer {
 
   /// What the camera sees at the pixel's centre; false where it sees nothing.
   bool centre(glm::ivec2 pixel, CameraRay& ray, PathVertex& vertex) const;
+  /// PathIntegrator::lights_reaching(), by the same chance for all pixels.
+  std::uint32_t lights_reaching(const PathVertex& vertex) const;
   /// Whether every sample of a pixel starts from what is at its centre.
   bool starts_at_centre() const { return starts_at_centre_; }
   /// Samples `first` ... `first + count - 1` of one of the pixel's independent point sets.

@@ -77,8 +77,9 @@ void render(const ReferenceOptions& options) {
 
 constexpr const char* kFooter =
     R"(Writes R,G,B [W m^-2 sr^-1]; direct; noise, direct_noise (half the difference of two independent halves of the
-samples, what `volgi compare` takes out); position [m], normal, albedo, id, depth [m]. With --light indirect the direct
-layer is called left_out.direct. The same bytes for any number of threads.
+samples, what `volgi compare` takes out); position [m], normal, albedo, id, depth [m]; lit, with bit k where punctual
+light k reaches the pixel's centre (not with --vpls). With --light indirect the direct layer is called left_out.direct.
+The same bytes for any number of threads.
 --vpls gathers virtual lights of `volgi render --dump` instead of tracing paths, with the noise layers zero: reflected
 ones are the indirect light; emitted ones are the direct light of emissive surfaces, beside the exact punctual light;
 negative ones are left out, exact visibility is what they stand for. Cost: pixels x lights shadow rays, 100 million for

@@ -73,5 +73,20 @@ TEST(Independent, LayersAgree) {
   EXPECT_GT(same, 0.97 * static_cast<double>(mask.size()));
 }
 
+TEST(Independent, SameLightsReachAPixel) {
+  const Scene scene = load_scene(kData + "scenes/metal_box.glb");
+  PathTracerOptions options;
+  options.size = {192, 192};
+  options.samples_per_pixel = 2;
+  options.max_bounces = 0;
+  const ReferencePicture picture = path_trace(scene, scene.cameras.at(0), options);
+  const RegionLayers theirs = *read_reference(kData + "ref/metal_box/full.exr", PathTracerOptions::Light::full).layers;
+  ASSERT_EQ(theirs.lit.size(), picture.lit.size());
+  int same = 0;
+  for (size_t i = 0; i < picture.lit.size(); ++i) same += theirs.lit[i] == picture.lit[i];
+  RecordProperty("same", same);
+  EXPECT_GT(same, 0.995 * static_cast<double>(picture.lit.size()));
+}
+
 }  // namespace
 }  // namespace volgi

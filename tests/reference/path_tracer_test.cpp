@@ -116,6 +116,26 @@ TEST(PathTracer, LightAskedForAddsUp) {
   EXPECT_NE(to_channels(indirect).find("left_out.direct.R"), nullptr);
 }
 
+// Two lamps on either side of a wall, which ends in the middle of a black floor.
+TEST(PathTracer, SaysWhichLightsReachAPixel) {
+  Scene scene;
+  add_quad(scene, add_material(scene, glm::vec3(0.0f)), {}, {2, 0, 0}, {0, 0, -2});
+  add_quad(scene, 0, {0, 1, 1}, {0, 0, -1}, {0, 1, 0});
+  scene.lights = {point_light({-1, 1, 1}, glm::vec3(1.0f)), point_light({1, 1, 1}, glm::vec3(1.0f))};
+  const Camera above = camera_at({0, 10, 0}, {}, 0.5f, 2.0f);
+  PathTracerOptions options = small(2);
+  options.size = {16, 16};
+  const std::vector<float> two = path_trace(scene, above, options).lit;
+  const auto at = [](const std::vector<float>& lit, int x, int y) { return lit[static_cast<size_t>(16 * y + x)]; };
+  EXPECT_EQ(at(two, 13, 14), 1.0f);  // right in the picture is +Z, up is +X
+  EXPECT_EQ(at(two, 13, 1), 2.0f);
+  EXPECT_EQ(at(two, 0, 8), 3.0f);
+  std::vector<Light> many(25, point_light({0, -1, 0}, glm::vec3(1.0f)));  // below the floor
+  many.push_back(scene.lights[0]);
+  scene.lights = many;
+  EXPECT_EQ(at(path_trace(scene, above, options).lit, 13, 14), 2.0f) << "light 25 has bit 25 mod 24";
+}
+
 // What compare reads back of a picture that was written: its light and its noise, apart as --light has them.
 TEST(PathTracer, FileKeepsLightAndNoise) {
   const ReferencePicture p = path_trace(lit_box(), kInside, small(8));
@@ -125,6 +145,7 @@ TEST(PathTracer, FileKeepsLightAndNoise) {
   const ReferenceFile indirect = read_reference(path, PathTracerOptions::Light::indirect);
   std::remove(path.c_str());
   ASSERT_TRUE(full.noise && full.layers && indirect.noise);
+  EXPECT_EQ(full.layers->lit, p.lit);
   double noise = 0;
   for (size_t i = 0; i < p.color.pixels.size(); ++i) {
     const glm::vec3 n = 0.5f * (p.half_a.pixels[i] - p.half_b.pixels[i]);
