@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/error.h"
@@ -116,11 +118,21 @@ ReferenceFile from_folder(const fs::path& path, AskedLight light) {
   return {std::move(selected.color), std::move(selected.noise), std::move(layers)};
 }
 
+void require_finite(const Image& image, const fs::path& path, std::string_view whose) {
+  const auto finite = [](glm::vec3 c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); };
+  const auto bad = std::count_if(image.pixels.begin(), image.pixels.end(), [&](glm::vec3 c) { return !finite(c); });
+  if (bad == 0) return;
+  throw Error(ExitCode::bad_input, fmt::format("{}: {} pixels of {} are NaN or infinite", path.string(), bad, whose));
+}
+
 }  // namespace
 
 ReferenceFile read_reference(const fs::path& path, AskedLight light) {
   const ChannelImage image = read_exr(path);
-  return is_own_reference(image) ? from_own(image, path, light) : from_folder(path, light);
+  ReferenceFile reference = is_own_reference(image) ? from_own(image, path, light) : from_folder(path, light);
+  require_finite(reference.color, path, "the reference");  // no figure would mean anything, and no limit would be over
+  if (reference.noise) require_finite(*reference.noise, path, "the reference's noise");
+  return reference;
 }
 
 Image read_test(const fs::path& path, AskedLight light) {

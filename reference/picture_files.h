@@ -19,7 +19,7 @@ struct ReferenceFile {
 /// @param light  full: R,G,B as they are. direct: the direct layer, or direct.exr. indirect: R,G,B less direct, the
 /// noise
 ///               likewise, unless R,G,B leave the direct light out already.
-/// @throws Error(bad_input) for a file or a layer that is missing, naming it.
+/// @throws Error(bad_input) for a file or a layer that is missing, naming it, and for pixels that are not finite.
 ReferenceFile read_reference(const std::filesystem::path& path, PathTracerOptions::Light light);
 
 /// Reads a picture to be judged: R,G,B; or of an EXR with direct.RGB that layer for direct, R,G,B less it for indirect.

@@ -206,7 +206,7 @@ constexpr const char* kFooter =
     R"(Figures: ratio mean(test)/mean(ref); rmse% of mean(ref); relMSE; p95% 95th percentile of the relative error;
 blk% RMS error of 16x16 block means; * with the reference's own noise taken out. A REF is an EXR of `volgi reference`,
 or DIR/full.exr with full_noise.exr, direct.exr and aov.exr beside it. Exit code 1 when a limit is broken, or a limit is
-given and a pixel is not finite.
+given and a pixel is not finite; 3 when a pixel of REF is not.
 Regions: all; hit, where geometry is seen; noedge, hit without edges of geometry or of shadows; of noedge, shadow has no
 direct light and lit has, and no punctual light reaches shade.
 Example: volgi compare data/reference/ref/cornell/full.exr mine.exr --max-blk-percent 2 --energy 0.99:1.01)";

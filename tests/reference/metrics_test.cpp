@@ -217,6 +217,23 @@ TEST(Regions, NoiseOfDirectLightIsNoEdge) {
   EXPECT_EQ(pixels(Region::noedge, l), 16 * 16 - 9) << "without `lit` light has no noise";
 }
 
+// No figure of such a reference is over any limit: it must be refused.
+TEST(Compare, ReferencesThatAreNotFiniteAreRefused) {
+  const std::string path = ::testing::TempDir() + "volgi_reference_that_is_not_finite.exr";
+  Image ref = ramp(8, 8);
+  ref.at(3, 4).y = std::numeric_limits<float>::quiet_NaN();
+  ref.at(5, 5).x = std::numeric_limits<float>::infinity();
+  write_exr(path, ref);
+  try {
+    read_reference(path, PathTracerOptions::Light::full);
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(error.what()).find("2 pixels of the reference are NaN"), std::string::npos) << error.what();
+  }
+  std::remove(path.c_str());
+}
+
 TEST(Compare, LargerPicturesAreBoxFiltered) {
   Image large(6, 4);
   for (size_t i = 0; i < large.pixels.size(); ++i) large.pixels[i] = glm::vec3(static_cast<float>(i));
