@@ -17,6 +17,7 @@
 #include "core/image.h"
 #include "core/log.h"
 #include "reference/error_map.h"
+#include "reference/fit_hint.h"
 #include "reference/metrics.h"
 #include "reference/picture_files.h"
 
@@ -176,6 +177,7 @@ int compare(const CompareOptions& options) {
   const Region region = requested_region(options, reference);
   const Mask everywhere(reference.color.pixels.size(), 1);
   const Mask mask = reference.layers ? region_mask(region, *reference.layers) : everywhere;
+  const Mask hit = reference.layers ? region_mask(Region::hit, *reference.layers) : everywhere;
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string table, failures;
   for (const std::filesystem::path& path : options.tests) {
@@ -189,6 +191,10 @@ int compare(const CompareOptions& options) {
     json.update(to_json(m));
     json["failed"] = broken;
     table += table_row(m, path.string());
+    if (const std::string_view change = fit_hint(reference.color, test, hit); !change.empty()) {
+      json["hint"] = std::string(change);
+      table += fmt::format("   hint: the picture fits much better when {}\n", change);
+    }
     results.push_back(json);
     if (!options.diff.empty()) write_png_display(map_path(options, path), error_map(reference.color, test, mask));
   }

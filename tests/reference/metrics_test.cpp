@@ -14,6 +14,7 @@
 
 #include "core/error.h"
 #include "reference/error_map.h"
+#include "reference/fit_hint.h"
 #include "reference/picture_files.h"
 #include "tests/support/paths.h"
 
@@ -215,6 +216,24 @@ TEST(Regions, NoiseOfDirectLightIsNoEdge) {
   EXPECT_EQ(pixels(Region::noedge, l), 16 * 16);
   l.lit.clear();
   EXPECT_EQ(pixels(Region::noedge, l), 16 * 16 - 9) << "without `lit` light has no noise";
+}
+
+TEST(FitHint, NamesWhatWouldHelp) {
+  const Image ref = ramp(32, 24);
+  const Mask all(ref.pixels.size(), 1);
+  Image test = ref;
+  EXPECT_EQ(fit_hint(ref, test, all), "");
+  for (glm::vec3& t : test.pixels) t *= 3.1f;
+  EXPECT_EQ(fit_hint(ref, test, all), "divided by pi");
+  for (glm::vec3& t : test.pixels) t /= 3.1f * 3.1f;
+  EXPECT_EQ(fit_hint(ref, test, all), "times pi");
+  for (size_t i = 0; i < ref.pixels.size(); ++i) test.pixels[i] = ref.pixels[i / 32 * 32 + 31 - i % 32];
+  EXPECT_EQ(fit_hint(ref, test, all), "flipped horizontally");
+  for (size_t i = 0; i < ref.pixels.size(); ++i) test.pixels[i] = ref.pixels[(23 - i / 32) * 32 + i % 32];
+  EXPECT_EQ(fit_hint(ref, test, all), "flipped vertically");
+  EXPECT_EQ(fit_hint(ref, test, Mask(ref.pixels.size(), 0)), "") << "a sky is not compared";
+  test.at(0, 0).x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(fit_hint(ref, test, all), "");
 }
 
 // No figure of such a reference is over any limit: it must be refused.
