@@ -12,6 +12,8 @@
 
 namespace volgi {
 
+class Sky;
+
 /// 8-bit RGBA as stored in the file (sRGB encoded where the use is colour), row 0 first as glTF has it (v = 0).
 struct TextureImage {
   int width = 0;
@@ -51,16 +53,26 @@ struct Material {
   float metallic_factor = 1.0f;   // glTF's default
   float roughness_factor = 1.0f;  // glTF's default
   TextureUse metallic;            // linear: blue metallic, green roughness
-  // KHR_materials_specular and KHR_materials_ior: what mirrors on surfaces that are no metal. Factor 0: nothing does.
-  float specular_factor = 1.0f;
+  // KHR_materials_specular and KHR_materials_ior. In files specularFactor is 1 unless they say so; 0 here is a surface
+  // that is Lambertian but for its metal.
+  float specular_factor = 0.0f;
   glm::vec3 specular_color_factor{1.0f};
-  float ior = 1.5f;                   // refractive index, at least 1; or 0: mirrors all light at any angle
+  float ior = 1.5f;                   // index of refraction; 0: the mirror of an infinite one
+  bool lambertian = false;            // nothing shines, not even metal (--materials lambert)
   glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
   TextureUse emissive;                // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
+  TextureUse normal;  // linear, in tangent space; moves shading normals
+  float normal_scale = 1.0f;
+  bool unlit = false;         // KHR_materials_unlit: seen as its colour, stops light, sends none
   bool double_sided = false;  // matters for emission only: every triangle blocks and reflects on both sides
 
+  /// Reflectance from in front of what is no metal; at grazing angles it is specular_factor.
+  glm::vec3 dielectric_0() const {
+    const float r = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
+    return specular_factor * glm::min(r * r * specular_color_factor, glm::vec3(1.0f));
+  }
   bool is_emissive() const { return emissive_radiance != glm::vec3(0.0f); }
 };
 
@@ -103,7 +115,8 @@ struct Scene {
   std::vector<Texture> textures;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
-  glm::vec3 bounds_min{0.0f};  // of all triangles; both zero when there are none
+  std::shared_ptr<const Sky> sky;  // core/sky.h; none: black outside
+  glm::vec3 bounds_min{0.0f};      // of all triangles; both zero when there are none
   glm::vec3 bounds_max{0.0f};
 
   size_t triangle_count() const;

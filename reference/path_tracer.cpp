@@ -39,10 +39,14 @@ class PictureTracer {
       picture_.lit[size_t(y) * size_t(options_.size.x) + size_t(x)] = float(tracer_.lights_reaching(centre));
     }
     const bool known = tracer_.starts_at_centre();
-    if (known && !hit) return;
     std::array<LightSum, 2> halves;
-    for (std::uint32_t half = 0; half < 2; ++half)
-      tracer_.add_samples({x, y}, known ? &centre : nullptr, half, 0, samples_per_half_, halves[half]);
+    for (std::uint32_t half = 0; half < 2; ++half) {
+      if (known && !hit) {
+        tracer_.add_background(ray, samples_per_half_, halves[half]);
+      } else {
+        tracer_.add_samples({x, y}, known ? &centre : nullptr, half, 0, samples_per_half_, halves[half]);
+      }
+    }
     write_light(x, y, halves);
   }
 

@@ -30,9 +30,10 @@ struct ReferencePicture {
   std::vector<float> lit;          // PathIntegrator::lights_reaching() there; empty where nobody asked
 };
 
-/// Path tracing with next-event estimation towards punctual and emissive lights (multiple importance sampling with the
-/// hemisphere for emissive triangles), Lambertian reflection on both sides of every triangle, no clamping. Background
-/// black. Cost: samples · pixels · path length rays. Deterministic: the same bytes for any number of threads.
+/// Path tracing with next-event estimation towards punctual lights, emissive triangles and the sky (multiple importance
+/// sampling with the path's own rays for the last two), glTF's reflection on both sides of every triangle, no clamping.
+/// Background: the scene's sky, black without one. Cost: samples · pixels · path length rays. Deterministic: the same
+/// bytes for any number of threads.
 ReferencePicture path_trace(const Scene& scene, const Camera& camera, const PathTracerOptions& options);
 
 /// Layers as channels: R,G,B; direct.RGB; noise.RGB = (half_a - half_b)/2; direct_noise.RGB likewise; position.XYZ;

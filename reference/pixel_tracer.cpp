@@ -28,6 +28,10 @@ std::uint32_t PixelTracer::lights_reaching(const PathVertex& vertex) const {
   return integrator_.lights_reaching(vertex, hash(options_.seed, kCentre));
 }
 
+void PixelTracer::add_background(const CameraRay& ray, int count, LightSum& sum) const {
+  sum.direct += double(count) * glm::dvec3(integrator_.background(ray.direction));
+}
+
 void PixelTracer::add_samples(glm::ivec2 pixel, const PathVertex* known, std::uint32_t point_set, int first, int count,
                               LightSum& sum) const {
   const std::uint32_t index = static_cast<std::uint32_t>(pixel.y) * static_cast<std::uint32_t>(options_.size.x) +
@@ -42,7 +46,11 @@ void PixelTracer::add_sample(glm::vec2 corner, const PathVertex* known, PathSamp
   if (known == nullptr) {
     const bool box = options_.filter == PathTracerOptions::Filter::box;
     const glm::vec2 position = corner + (box ? sampler.next2() : glm::vec2(0.5f));
-    if (!integrator_.first_vertex(camera_ray(camera_, position, options_.size), sampler.next_seed(), vertex)) return;
+    const CameraRay ray = camera_ray(camera_, position, options_.size);
+    if (!integrator_.first_vertex(ray, sampler.next_seed(), vertex)) {
+      sum.direct += glm::dvec3(integrator_.background(ray.direction));
+      return;
+    }
   }
   const PathRadiance radiance = integrator_.trace(known != nullptr ? *known : vertex, sampler, max_bounces_);
   sum.direct += glm::dvec3(radiance.direct);

@@ -29,6 +29,9 @@ class PixelTracer {
   void add_samples(glm::ivec2 pixel, const PathVertex* known, std::uint32_t point_set, int first, int count,
                    LightSum& sum) const;
 
+  /// Samples of a ray that meets nothing: the sky.
+  void add_background(const CameraRay& ray, int count, LightSum& sum) const;
+
  private:
   void add_sample(glm::vec2 corner, const PathVertex* known, PathSampler sampler, LightSum& sum) const;
 

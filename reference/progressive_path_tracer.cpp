@@ -10,6 +10,7 @@ namespace volgi {
 struct ProgressivePathTracer::Data {
   struct Pixel {
     LightSum sum;
+    CameraRay ray;
     PathVertex centre;
     bool hit = false;
   };
@@ -27,11 +28,11 @@ struct ProgressivePathTracer::Data {
   void add_samples(int x, int y, int count) {
     Pixel& p = pixel(x, y);
     const bool known = tracer.starts_at_centre();
-    if (known && samples == 0) {
-      CameraRay ray;
-      p.hit = tracer.centre({x, y}, ray, p.centre);
+    if (known && samples == 0) p.hit = tracer.centre({x, y}, p.ray, p.centre);
+    if (known && !p.hit) {
+      tracer.add_background(p.ray, count, p.sum);
+      return;
     }
-    if (known && !p.hit) return;
     tracer.add_samples({x, y}, known ? &p.centre : nullptr, 0, samples, count, p.sum);
   }
 

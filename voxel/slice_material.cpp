@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/surface.h"
 #include "shaders/shared/material.shared.h"
 #include "voxel/slice_internal.h"
 
@@ -41,8 +42,8 @@ float level_of_detail(const Scene& scene, const Mesh& mesh, const glm::uvec3& co
 /// @param base  baseColor times COLOR_0; @param texel, emissive_texel  of the textures or 1.
 SlicedMaterial sliced(const Material& m, const glm::vec4& base, const glm::vec4& texel,
                       const glm::vec3& emissive_texel) {
-  SlicedMaterial out{shared::surface_albedo(glm::vec3(base), m.metallic_factor * texel.z, m.roughness_factor * texel.y),
-                     glm::vec3(0.0f), 1.0f};
+  const shared::Reflectance reflectance = reflectance_of(m, glm::vec3(base), m.metallic_factor * texel.z);
+  SlicedMaterial out{shared::surface_albedo(reflectance, m.roughness_factor * texel.y), glm::vec3(0.0f), 1.0f};
   if (m.is_emissive()) out.emission = m.emissive_radiance * emissive_texel;
   if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a + ALPHA_CUTOFF_SLACK >= m.alpha_cutoff ? 1.0f : 0.0f;
   if (m.alpha_mode == AlphaMode::blend) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);

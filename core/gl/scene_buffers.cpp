@@ -128,6 +128,7 @@ SceneBuffers::SceneBuffers(const Scene& scene) : materials_(scene.materials) {
     add_texture(m.base_color, true);
     add_texture(m.metallic, false);
     add_texture(m.emissive, true);
+    add_texture(m.normal, false);
   }
 }
 
@@ -175,16 +176,23 @@ void SceneBuffers::bind_material(const Program& program, int material) const {
   program.set("material_base_color_factor", m.base_color_factor);
   program.set("material_metallic_factor", m.metallic_factor);
   program.set("material_roughness_factor", m.roughness_factor);
+  program.set("material_dielectric_0", m.dielectric_0());
+  program.set("material_dielectric_90", m.specular_factor);
+  program.set("material_lambertian", m.lambertian ? 1 : 0);
   program.set("material_emissive_radiance", m.emissive_radiance);
   program.set("material_alpha_mode", static_cast<int>(m.alpha_mode));
   program.set("material_alpha_cutoff", m.alpha_cutoff);
   program.set("material_double_sided", m.double_sided ? 1 : 0);
+  program.set("material_unlit", m.unlit ? 1 : 0);
+  program.set("material_sample", sample_);
+  program.set("material_normal_scale", m.normal_scale);
   bind_use(program, MATERIAL_BASE_COLOR_UNIT, m.base_color, true, "material_base_color_texcoord",
            "material_base_color_transform");
   bind_use(program, MATERIAL_METALLIC_UNIT, m.metallic, false, "material_metallic_texcoord",
            "material_metallic_transform");
   bind_use(program, MATERIAL_EMISSIVE_UNIT, m.emissive, true, "material_emissive_texcoord",
            "material_emissive_transform");
+  bind_use(program, MATERIAL_NORMAL_UNIT, m.normal, false, "material_normal_texcoord", "material_normal_transform");
 }
 
 void SceneBuffers::draw(const Program& program) const {

@@ -24,8 +24,13 @@ class SceneBuffers {
   void set_geometry(const Scene& scene);
 
   /// Draws everything with `program`, which must include shared/material.glsl: per material it sets the material
-  /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive). Skips meshes without triangles.
+  /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive), 3 (normal). Skips meshes without
+  /// triangles.
   void draw(const Program& program) const;
+
+  /// Of n pictures that are one when they are averaged, the k-th: k / n. What BLEND covers by chance is then covered in
+  /// its share of them.
+  void set_sample(float sample) { sample_ = sample; }
 
   /// Triangles [first, first + count) of the vertex buffer.
   struct Triangles {
@@ -57,6 +62,7 @@ class SceneBuffers {
   std::map<std::pair<int, bool>, size_t> texture_of_;
   Buffer vertices_;
   VertexArray vertex_array_;
+  float sample_ = 0.0f;
   size_t triangles_ = 0;
   size_t texture_bytes_ = 0;
 };

@@ -15,8 +15,17 @@ using Json = nlohmann::json;
 constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
 
 const std::set<std::string_view> supported_extensions = {
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",    "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_texture_transform",           "KHR_mesh_quantization"};
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_texture_transform",           "KHR_mesh_quantization", "KHR_materials_unlit"};
+
+/// Its specularFactor is not KHR_materials_specular's: read with checks of its own.
+constexpr std::string_view SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness";
+
+/// Change how a surface looks, or what else a file says, but not where it is: ignored, and said, also where required.
+const std::set<std::string_view> cosmetic_extensions = {
+    "KHR_materials_variants",    "KHR_materials_clearcoat",  "KHR_materials_sheen",
+    "KHR_materials_iridescence", "KHR_materials_anisotropy", "KHR_materials_dispersion",
+    "KHR_materials_volume",      "KHR_xmp_json_ld",          "KHR_materials_diffuse_transmission"};
 
 enum class Kind { index, index_or_object, indices, size, number, numbers, number_or_numbers, text, flag, object, list };
 
@@ -173,8 +182,8 @@ void check_extensions(const std::filesystem::path& file, const Json& root) {
     for (const Json& name : *names) {
       if (!name.is_string()) refuse(file, fmt::format("{} must be a list of strings", list));
       const auto text = name.get<std::string>();
-      if (supported_extensions.contains(text)) continue;
-      if (list == std::string_view("extensionsRequired")) {
+      if (supported_extensions.contains(text) || text == SPECULAR_GLOSSINESS) continue;
+      if (!cosmetic_extensions.contains(text) && list == std::string_view("extensionsRequired")) {
         refuse(file, fmt::format("requires the extension {}, which is not supported; export without it", text));
       }
       warn(file, fmt::format("the extension {} is ignored", text));

@@ -58,6 +58,46 @@ void read_ior(const Document& document, const tinygltf::Material& in, const std:
   material.ior = float(ior);
 }
 
+/// KHR_materials_pbrSpecularGlossiness, archived: its colours instead of the metallic workflow's. Where a texture says
+/// how much mirrors, what glTF's default does is taken.
+void read_specular_glossiness(const Document& document, const tinygltf::Material& in, const std::string& who,
+                              TextureTable& textures, Material& material) {
+  constexpr const char* extension = "KHR_materials_pbrSpecularGlossiness";
+  const auto found = in.extensions.find(extension);
+  if (found == in.extensions.end()) return;
+  warn(document.path, "KHR_materials_pbrSpecularGlossiness: taken as dielectric of its diffuse colour");
+  const auto number = [&](const tinygltf::Value& value, const char* what) {
+    if (!value.IsNumber()) refuse(document.path, fmt::format("{}: its {} is not a number", who, what));
+    return in_range(document, value.GetNumberAsDouble(), 0.0, 1.0, who, what);
+  };
+  const auto numbers = [&](const char* name, int count, auto& into) {
+    const tinygltf::Value* value = find(in, extension, name);
+    if (value == nullptr) return;
+    if (!value->IsArray() || value->ArrayLen() != size_t(count))
+      refuse(document.path, fmt::format("{}: its {} needs {} numbers", who, name, count));
+    for (int c = 0; c < count; ++c) into[c] = number(value->Get(c), name);
+  };
+  material.base_color_factor = glm::vec4(1.0f);
+  numbers("diffuseFactor", 4, material.base_color_factor);
+  material.base_color = {};
+  if (const tinygltf::Value* texture = find(in, extension, "diffuseTexture")) {
+    tinygltf::TextureInfo info;
+    if (texture->Has("index") && texture->Get("index").IsInt()) info.index = texture->Get("index").GetNumberAsInt();
+    if (texture->Has("texCoord") && texture->Get("texCoord").IsInt())
+      info.texCoord = texture->Get("texCoord").GetNumberAsInt();
+    material.base_color = textures.use(info, who + " diffuseTexture");
+  }
+  material.metallic_factor = 0.0f;
+  material.metallic = {};
+  const bool textured = find(in, extension, "specularGlossinessTexture") != nullptr;
+  const tinygltf::Value* glossiness = find(in, extension, "glossinessFactor");
+  material.roughness_factor = 1.0f - (glossiness != nullptr ? number(*glossiness, "glossinessFactor") : 1.0f);
+  glm::vec3 mirror(1.0f);
+  numbers("specularFactor", 3, mirror);
+  constexpr float kOfDefault = 0.04f;
+  material.specular_color_factor = textured ? glm::vec3(1.0f) : mirror / kOfDefault;
+}
+
 /// KHR_materials_transmission: the share of light that passes, not bent and not coloured, as through a hole; the
 /// surface covers the rest.
 void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
@@ -94,15 +134,24 @@ Material read_material(const Document& document, size_t index, TextureTable& tex
   material.metallic_factor = in_range(document, pbr.metallicFactor, 0.0, 1.0, who, "metallicFactor");
   material.roughness_factor = in_range(document, pbr.roughnessFactor, 0.0, 1.0, who, "roughnessFactor");
   material.metallic = textures.use(pbr.metallicRoughnessTexture, who + " metallicRoughnessTexture");
+  material.specular_factor = 1.0f;
   read_specular(document, in, who, material);
   read_ior(document, in, who, material);
+  read_specular_glossiness(document, in, who, textures, material);
   material.emissive_radiance = read_emission(document, in, who);
   material.emissive = textures.use(in.emissiveTexture, who + " emissiveTexture");
   material.alpha_mode = read_alpha_mode(document, in.alphaMode, who);
   material.alpha_cutoff = in_range(document, in.alphaCutoff, 0.0, 1e6, who, "alphaCutoff");
   apply_transmission(document, in, who, material);
   material.double_sided = in.doubleSided;
-  if (in.normalTexture.index >= 0) warn(document.path, "normal maps are ignored");
+  tinygltf::TextureInfo normal;
+  normal.index = in.normalTexture.index;
+  normal.texCoord = in.normalTexture.texCoord;
+  normal.extensions = in.normalTexture.extensions;
+  material.normal = textures.use(normal, who + " normalTexture");
+  material.normal_scale = in_range(document, in.normalTexture.scale, -1e3, 1e3, who, "normalTexture's scale");
+  material.unlit = in.extensions.contains("KHR_materials_unlit");
+  if (material.unlit) material.emissive_radiance = glm::vec3(0.0f);
   return material;
 }
 
@@ -125,8 +174,8 @@ void warn_of_metals(const Document& document, const std::vector<Material>& mater
   const size_t index = size_t(metal - materials.begin());
   const bool in_file = index < document.model.materials.size();
   const std::string who = in_file ? element("material", index, metal->name) : "glTF's default material";
-  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default): it reflects as much as one, but "
-                                  "diffusely",
+  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default): light of other surfaces "
+                                  "reflects from it as if it were diffuse",
                                   who));
 }
 
@@ -138,7 +187,11 @@ Materials read_materials(const Document& document) {
   for (size_t i = 0; i < document.model.materials.size(); ++i) {
     out.materials.push_back(read_material(document, i, textures));
   }
-  if (needs_default_material(document)) out.materials.emplace_back().name = "default";
+  if (needs_default_material(document)) {
+    Material& of_gltf = out.materials.emplace_back();
+    of_gltf.name = "default";
+    of_gltf.specular_factor = 1.0f;
+  }
   warn_of_metals(document, out.materials);
   if (out.materials.empty()) out.materials.emplace_back().name = "default";
   return out;

@@ -49,7 +49,7 @@ double openness(const Scene& scene, std::span<const glm::vec3> from) {
 }
 
 void warn_of_open_scene(const Scene& scene, glm::vec3 eye) {
-  if (is_quiet()) return;
+  if (is_quiet() || scene.sky) return;
   std::vector<glm::vec3> from{eye};
   for (const Light& light : scene.lights) {
     if (light.type != Light::Type::directional && from.size() < 8) from.push_back(light.position);
@@ -58,7 +58,7 @@ void warn_of_open_scene(const Scene& scene, glm::vec3 eye) {
   if (share < LEAST_OPENNESS) return;
   warn_once(
       fmt::format("{}: open, and there is no sky: {:.0f} % of the ways from camera and lamps end outside, where "
-                  "light is lost and nothing is seen",
+                  "light is lost and nothing is seen; --sky puts something there",
                   scene.name, 100.0 * share));
 }
 

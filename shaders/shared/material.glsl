@@ -11,6 +11,11 @@
 uniform vec4 material_base_color_factor;
 uniform float material_metallic_factor;
 uniform float material_roughness_factor;
+uniform vec3 material_dielectric_0;  // reflectances of what is no metal
+uniform float material_dielectric_90;
+uniform int material_lambertian;
+uniform int material_unlit;         // seen as its colour, and reflects nothing
+uniform float material_sample;      // of several pictures in one: where in [0, 1) this one draws what BLEND shows
 uniform vec3 material_emissive_radiance;  // W m^-2 sr^-1
 uniform int material_alpha_mode;
 uniform float material_alpha_cutoff;
@@ -39,14 +44,31 @@ vec4 material_fetch(sampler2D image, int texcoord, mat3 transform, vec2 uv0, vec
 #endif
 }
 
-// Albedo (surface_albedo() of baseColor * COLOR_0, linear), and the alpha of the texture, untested.
-vec4 material_albedo_alpha(vec2 uv0, vec2 uv1, vec4 color) {
-  vec4 base = material_base_color_factor * color *
-              material_fetch(material_base_color_texture, material_base_color_texcoord, material_base_color_transform,
-                             uv0, uv1);
+// baseColor * COLOR_0, linear; alpha untested.
+vec4 material_base(vec2 uv0, vec2 uv1, vec4 color) {
+  return material_base_color_factor * color *
+         material_fetch(material_base_color_texture, material_base_color_texcoord, material_base_color_transform, uv0,
+                        uv1);
+}
+
+// What a point is made of. @return perceptual roughness.
+float material_reflectance(vec3 base, vec2 uv0, vec2 uv1, out Reflectance reflectance) {
   vec4 texel = material_fetch(material_metallic_texture, material_metallic_texcoord, material_metallic_transform, uv0, uv1);
-  float metallic = material_metallic_factor * texel.b, roughness = material_roughness_factor * texel.g;
-  return vec4(surface_albedo(base.rgb, metallic, roughness), base.a);
+  float lit = material_unlit != 0 ? 0.0 : 1.0;
+  reflectance = reflectance_of(base, material_metallic_factor * texel.b, material_dielectric_0, material_dielectric_90,
+                               material_lambertian);
+  reflectance.diffuse *= lit;
+  reflectance.at_0 *= lit;
+  reflectance.at_90 *= lit;
+  return material_roughness_factor * texel.g;
+}
+
+// surface_albedo(), and the alpha of the texture, untested.
+vec4 material_albedo_alpha(vec2 uv0, vec2 uv1, vec4 color) {
+  vec4 base = material_base(uv0, uv1, color);
+  Reflectance reflectance;
+  float roughness = material_reflectance(base.rgb, uv0, uv1, reflectance);
+  return vec4(surface_albedo(reflectance, roughness), base.a);
 }
 
 // Radiance that the front side sends (both sides where material_double_sided).
@@ -74,10 +96,11 @@ float material_hash(uvec3 v) {
 }
 
 // Whether a raster or shadow pass keeps the fragment. BLEND is kept with probability alpha, by a hash of `seed`: the
-// pixel, and a number of the triangle so that surfaces behind one another decide independently.
+// pixel, and a number of the triangle so that surfaces behind one another decide independently. Pictures at even steps
+// of material_sample keep it in alpha of them, exactly but for a step.
 bool material_keeps(float alpha, uvec3 seed) {
   float coverage = material_coverage(alpha);
-  return coverage >= 1.0 || material_hash(seed) < coverage;
+  return coverage >= 1.0 || fract(material_hash(seed) + material_sample) < coverage;
 }
 
 #endif

@@ -10,23 +10,51 @@ SHARED_BEGIN
 #define MATERIAL_BASE_COLOR_UNIT 0
 #define MATERIAL_METALLIC_UNIT 1
 #define MATERIAL_EMISSIVE_UNIT 2
+#define MATERIAL_NORMAL_UNIT 3
+#define DIRECTIONAL_ALBEDO_UNIT 4  // of what is drawn for the camera
 
-// What a metal reflects in all, lit evenly from everywhere: the mean directional albedo of glTF's conductor (appendix
-// B: GGX, height-correlated Smith, Schlick with F0 = baseColor), which is linear in F0. Polynomials of the perceptual
-// roughness within 0.002 of an integral over visible normals (tests/core/metal_albedo_test.cpp). Single scattering, as
-// there: a rough white metal keeps 0.41.
-SHARED_FUNCTION vec3 metal_albedo(vec3 base, float roughness) {
-  float r = clamp(roughness, 0.0f, 1.0f);
-  float of_base = (((1.49687649f * r - 2.71710952f) * r + 0.72623374f) * r - 0.05095023f) * r + 0.95260215f;
-  float of_white = (((-0.21850646f * r + 0.54405833f) * r - 0.41000498f) * r + 0.03986327f) * r + 0.04710394f;
-  return base * of_base + vec3(of_white);
+// A surface's parts, glTF 2.0 appendix B: diffuse albedo before Fresnel takes its share, and what its mirror of facets
+// reflects from in front and at grazing angles.
+struct Reflectance {
+  vec3 diffuse;
+  vec3 at_0;
+  float at_90;
+};
+
+// @param dielectric_0, dielectric_90  of the part that is no metal (KHR_materials_specular, _ior). @param lambertian
+// nothing shines: 1, and metals are black.
+SHARED_FUNCTION Reflectance reflectance_of(vec3 base, float metallic, vec3 dielectric_0, float dielectric_90,
+                                           int lambertian) {
+  Reflectance r;
+  r.diffuse = base * (1.0f - metallic);
+  float shines = lambertian != 0 ? 0.0f : 1.0f;
+  r.at_0 = (dielectric_0 * (1.0f - metallic) + base * metallic) * shines;
+  r.at_90 = (dielectric_90 * (1.0f - metallic) + metallic) * shines;
+  return r;
 }
 
-// Diffuse albedo of everything that a surface reflects: a metal's mirror is spread over the hemisphere, so that it is
-// not black.
-SHARED_FUNCTION vec3 surface_albedo(vec3 base, float metallic, float roughness) {
-  vec3 metal = metallic > 0.0f ? metal_albedo(base, roughness) : vec3(0.0f);
-  vec3 albedo = base * (1.0f - metallic) + metal * metallic;
+// Mean of Schlick's (1 - v.h)^5 over a Lambertian surface's directions of light and view.
+#define SCHLICK_OF_DIFFUSE 0.0036868f
+
+// What the mirror reflects in all, lit evenly from everywhere: linear in both reflectances. Polynomials of the
+// perceptual roughness within 0.002 of an integral over visible normals (tests/core/metal_albedo_test.cpp). Single
+// scattering, as glTF's: a rough white metal keeps 0.41.
+SHARED_FUNCTION vec3 mirror_albedo(vec3 at_0, float at_90, float roughness) {
+  float r = clamp(roughness, 0.0f, 1.0f);
+  float of_0 = (((1.49687649f * r - 2.71710952f) * r + 0.72623374f) * r - 0.05095023f) * r + 0.95260215f;
+  float of_90 = (((-0.21850646f * r + 0.54405833f) * r - 0.41000498f) * r + 0.03986327f) * r + 0.04710394f;
+  return at_0 * of_0 + vec3(of_90 * at_90);
+}
+
+// Diffuse albedo of everything that a surface reflects: its mirror is spread over the hemisphere, so that no metal is
+// black where light only passes.
+SHARED_FUNCTION vec3 surface_albedo(Reflectance r, float roughness) {
+  vec3 albedo = r.diffuse;
+  if (r.at_90 > 0.0f) {
+    float front = max(max(r.at_0.x, r.at_0.y), r.at_0.z);
+    albedo *= 1.0f - (front + (r.at_90 - front) * SCHLICK_OF_DIFFUSE);
+    albedo += mirror_albedo(r.at_0, r.at_90, roughness);
+  }
   return min(max(albedo, vec3(0.0f)), vec3(1.0f));
 }
 

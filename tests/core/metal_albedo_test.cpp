@@ -38,18 +38,38 @@ double reflected(double f0, double roughness) {
 TEST(MetalAlbedo, IsTheMeanOverAllDirections) {
   for (const float roughness : {0.5f, 0.7f, 1.0f}) {
     for (const float f0 : {0.04f, 0.5f, 1.0f})
-      EXPECT_NEAR(shared::metal_albedo(glm::vec3(f0), roughness).y, reflected(double(f0), double(roughness)), 0.006)
+      EXPECT_NEAR(shared::mirror_albedo(glm::vec3(f0), 1.0f, roughness).y, reflected(double(f0), double(roughness)),
+                  0.006)
           << roughness << ' ' << f0;
   }
-  EXPECT_NEAR(shared::metal_albedo(glm::vec3(1.0f), 0.0f).x, 1.0f, 0.002f) << "a mirror";
+  EXPECT_NEAR(shared::mirror_albedo(glm::vec3(1.0f), 1.0f, 0.0f).x, 1.0f, 0.002f) << "a mirror";
+}
+
+shared::Reflectance of(glm::vec3 base, float metallic) {
+  return shared::reflectance_of(base, metallic, glm::vec3(0.0f), 0.0f, 0);
 }
 
 TEST(MetalAlbedo, SurfacesMixBoth) {
   const glm::vec3 base(0.9f, 0.4f, 0.1f);
-  EXPECT_EQ(shared::surface_albedo(base, 0.0f, 0.3f), base);
-  EXPECT_EQ(shared::surface_albedo(base, 1.0f, 0.3f), shared::metal_albedo(base, 0.3f));
-  const glm::vec3 half = shared::surface_albedo(base, 0.5f, 0.3f);
-  EXPECT_NEAR(half.x, 0.5f * (base.x + shared::metal_albedo(base, 0.3f).x), 1e-6f);
+  EXPECT_EQ(shared::surface_albedo(of(base, 0.0f), 0.3f), base);
+  const glm::vec3 metal = shared::mirror_albedo(base, 1.0f, 0.3f);
+  EXPECT_EQ(shared::surface_albedo(of(base, 1.0f), 0.3f), metal);
+  // Of the diffuse half the mirror of the other half takes its share.
+  const glm::vec3 half = shared::surface_albedo(of(base, 0.5f), 0.3f);
+  EXPECT_LT(half.x, 0.5f * (base.x + metal.x));
+  EXPECT_GT(half.x, 0.5f * metal.x);
+  const shared::Reflectance lambertian = shared::reflectance_of(base, 1.0f, glm::vec3(0.04f), 1.0f, 1);
+  EXPECT_EQ(shared::surface_albedo(lambertian, 0.3f), glm::vec3(0.0f));
+}
+
+TEST(MetalAlbedo, WhatIsNoMetalLosesToItsMirrorWhatThatTakes) {
+  // White plastic reflects no more than it receives, and nearly all of it.
+  for (const float roughness : {0.1f, 0.5f, 1.0f}) {
+    const auto r = shared::reflectance_of(glm::vec3(1.0f), 0.0f, glm::vec3(0.04f), 1.0f, 0);
+    const float albedo = shared::surface_albedo(r, roughness).x;
+    EXPECT_LE(albedo, 1.0f) << roughness;
+    EXPECT_GT(albedo, 0.95f) << roughness;
+  }
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 // Against pictures of an unrelated renderer (data/reference/README.md): direct light, one bounce, all bounces.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <tuple>
 
 #include "core/scene.h"
+#include "core/sky.h"
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
 #include "reference/picture_files.h"
@@ -19,10 +21,13 @@ class Independent : public testing::TestWithParam<std::tuple<std::string, std::s
 
 TEST_P(Independent, BlockMeansAndEnergyAgree) {
   const auto& [scene_name, mode] = GetParam();
-  const Scene scene = load_scene(kData + "scenes/" + scene_name + ".glb");
+  Scene scene = load_scene(kData + "scenes/" + scene_name + ".glb");
+  const bool sky = scene_name == "sky_court", metal = scene_name == "metal_box";
+  if (sky) scene.sky = std::make_shared<Sky>(glm::vec3(1.0f, 1.1f, 1.3f));  // scenes/index.json
+  const bool sampled = sky || scene_name == "area_tv";                      // also in direct light
   PathTracerOptions options;
   options.size = {192, 192};
-  options.samples_per_pixel = mode == "direct" ? 2 : mode == "one" ? 256 : 128;
+  options.samples_per_pixel = mode == "direct" ? (sampled ? 64 : 2) : mode == "one" ? 256 : 128;
   if (mode != "full") options.max_bounces = mode == "one" ? 1 : 0;
   const ReferencePicture picture = path_trace(scene, scene.cameras.at(0), options);
   const std::string folder = kData + "ref/" + scene_name + "/";
@@ -30,8 +35,9 @@ TEST_P(Independent, BlockMeansAndEnergyAgree) {
   const Metrics m =
       measure(reference.color, picture.color, &*reference.noise, region_mask(Region::noedge, *reference.layers));
   ASSERT_TRUE(m.relative && m.relative->blk_pct);
-  EXPECT_LT(*m.relative->blk_pct, 2.0);
-  EXPECT_NEAR(m.relative->ratio, 1.0, 0.01);
+  // Of metal, the masking of the other renderer is another one.
+  EXPECT_LT(*m.relative->blk_pct, metal ? 4.0 : 2.0);
+  EXPECT_NEAR(m.relative->ratio, 1.0, metal ? 0.03 : 0.01);
   EXPECT_EQ(m.nonfinite + m.negative, 0);
   RecordProperty("blk_percent", std::to_string(*m.relative->blk_pct));
   RecordProperty("energy", std::to_string(m.relative->ratio));
@@ -43,7 +49,8 @@ TEST_P(Independent, BlockMeansAndEnergyAgree) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Renderings, Independent,
-                         testing::Combine(testing::Values("cornell", "room", "thin_wall"),
+                         testing::Combine(testing::Values("cornell", "room", "thin_wall", "sky_court", "area_tv",
+                                                          "metal_box"),
                                           testing::Values("direct", "one", "full")),
                          [](const auto& test) { return std::get<0>(test.param) + "_" + std::get<1>(test.param); });
 
