@@ -7,6 +7,7 @@
 
 #include "core/light_layers.h"
 #include "core/luminance.h"
+#include "core/sky.h"
 
 namespace volgi {
 namespace {
@@ -26,10 +27,18 @@ double spot_solid_angle(const Light& light) {
   return 2.0 * glm::pi<double>() * (reached * reached * reached / (3.0 * ramp * ramp) + (outer - reached));
 }
 
-/// Power of all sources, emissive surfaces last.
+/// What enters the scene's bounds: a convex body's mean shadow is a quarter of its surface.
+double power_of_sky(const Scene& scene) {
+  if (!scene.sky) return 0.0;
+  const glm::dvec3 d = glm::dvec3(scene.bounds_max) - glm::dvec3(scene.bounds_min);
+  return luminance(scene.sky->integral()) * 0.25 * 2.0 * (d.x * d.y + d.y * d.z + d.z * d.x);
+}
+
+/// Power of all sources, the sky and emissive surfaces last.
 std::vector<double> power_of_sources(const Scene& scene, glm::dvec3 emitted_flux) {
   std::vector<double> power;
   for (const Light& light : scene.lights) power.push_back(power_luminance(light, scene.bounds_min, scene.bounds_max));
+  power.push_back(power_of_sky(scene));
   power.push_back(luminance(emitted_flux));
   return power;
 }
@@ -37,7 +46,9 @@ std::vector<double> power_of_sources(const Scene& scene, glm::dvec3 emitted_flux
 LightShares from_counts(std::vector<int> counts) {
   const int of_emitters = counts.back();
   counts.pop_back();
-  return {std::move(counts), of_emitters};
+  const int of_sky = counts.back();
+  counts.pop_back();
+  return {std::move(counts), of_sky, of_emitters};
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace volgi {
 /// How many of the virtual lights each source gets.
 struct LightShares {
   std::vector<int> of_light;  // as Scene::lights
+  int of_sky = 0;             // what surfaces reflect of it
   int of_emitters = 0;        // all emissive surfaces together
 };
 

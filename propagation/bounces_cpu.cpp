@@ -47,10 +47,11 @@ void BouncesCpu::make_room(const Run& run) {
   });
 }
 
-BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission,
-                             const BounceRules& rules) {
+BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
+                             const Sky* sky) {
   rules.check(transport_->linear());
-  const Run run{voxels, flux, has_emission, rules};
+  has_emission = has_emission || sky != nullptr;
+  const Run run{voxels, flux, has_emission, rules, sky};
   make_room(run);
   BounceReport report;
   if (rules.passes_per_run) {
@@ -94,7 +95,9 @@ void BouncesCpu::arrival_of_emission(const Run& run, BounceReport& report) {
   if (by_itself.together()) by_itself.iterations.reset();
   send_emission(run);
   report.sent += glm::vec3(total(sent_));
+  transport_->stream_in(run.sky);
   carry(sent_, by_itself, report);
+  transport_->stream_in(nullptr);
   received_direct_.swap(received_);
 }
 
@@ -179,6 +182,7 @@ void BouncesCpu::begin_order(const Run& run) {
     send_all();
   }
   received_.assign(sent_.size(), glm::vec4(0.0f));
+  transport_->stream_in(arrival_in_flight_ ? run.sky : nullptr);
   transport_->begin(sent_);
   in_flight_ = true;
 }

@@ -23,7 +23,9 @@ class BouncesCpu {
   explicit BouncesCpu(std::unique_ptr<TransportCpu> transport) : transport_(std::move(transport)) {}
 
   /// @throws Error(usage) as BounceRules::check.
-  BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules);
+  /// @param sky  streams in with the arrival of emission, and is arrival alike; null: none.
+  BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
+                   const Sky* sky = nullptr);
   /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
   void set_transport(std::unique_ptr<TransportCpu> transport);
 
@@ -40,8 +42,9 @@ class BouncesCpu {
   struct Run {
     const VoxelGrid& voxels;
     const SideFlux& flux;
-    bool has_emission;
+    bool has_emission;  // or sky
     const BounceRules& rules;
+    const Sky* sky;
   };
   void make_room(const Run& run);
   void carry(const Powers& sent, const BounceRules& rules, BounceReport& report);

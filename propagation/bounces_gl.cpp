@@ -22,8 +22,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 struct BouncesGl::Run {
   const VoxelGridGl& voxels;
   const SideFluxGl& flux;
-  bool has_emission;
+  bool has_emission;  // or sky
   const BounceRules& rules;
+  const Sky* sky;
 };
 
 BouncesGl::BouncesGl(std::unique_ptr<TransportGl> transport)
@@ -98,10 +99,11 @@ glm::vec3 BouncesGl::pop_sent() {
 }
 
 BounceReport BouncesGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission,
-                            const BounceRules& rules, gl::PassTimer& timer) {
+                            const BounceRules& rules, gl::PassTimer& timer, const Sky* sky) {
   rules.check(linear());
+  has_emission = has_emission || sky != nullptr;
   auto scope = timer.scope("propagation/propagate");
-  const Run run{voxels, flux, has_emission, rules};
+  const Run run{voxels, flux, has_emission, rules, sky};
   make_room(run);
   BounceReport report;
   if (rules.passes_per_run) {
@@ -130,6 +132,7 @@ void BouncesGl::orders(const Run& run, BounceReport& report) {
     const auto start = std::chrono::steady_clock::now();
     BounceReport carried;
     request_sent(run.voxels);
+    transport_->stream_in(arrival_of_emission ? run.sky : nullptr);
     transport_->carry(run.voxels, sent_, received_, order_rules, carried);
     const glm::vec3 sent = pop_sent();
     report.passes += carried.passes;
@@ -154,7 +157,9 @@ void BouncesGl::orders(const Run& run, BounceReport& report) {
 void BouncesGl::arrival_of_emission(const Run& run, BounceReport& report) {
   next_order(run.voxels, received_indirect_, &run.flux.emitted(), false);
   request_sent(run.voxels);
+  transport_->stream_in(run.sky);
   transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  transport_->stream_in(nullptr);
   next_order(run.voxels, received_direct_, nullptr, false);
   report.orders += 1;
 }
@@ -225,6 +230,7 @@ void BouncesGl::begin_order(const Run& run) {
     solver_->set_source(run.voxels, powers(), run.flux.punctual());
     solver_->send_all(run.voxels, powers(), false);
   }
+  transport_->stream_in(arrival_in_flight_ ? run.sky : nullptr);
   if (ResumableGl* resumable = transport_->resumable()) resumable->begin_order(run.voxels, sent_);
   in_flight_ = true;
 }

@@ -27,7 +27,7 @@ class BouncesGl {
   /// Says so on stderr when the estimate after the first order exceeds a minute.
   /// @throws Error(usage) as BounceRules::check, and for amortised runs of a scheme whose orders cannot be interrupted.
   BounceReport run(const VoxelGridGl& voxels, const SideFluxGl& flux, bool has_emission, const BounceRules& rules,
-                   gl::PassTimer& timer);
+                   gl::PassTimer& timer, const Sky* sky = nullptr);
 
   const gl::Buffer& received_direct() const { return received_direct_; }  // emission's first arrival [W], vec4 a side
   const gl::Buffer& received_indirect() const { return received_indirect_; }  // all later arrivals [W]

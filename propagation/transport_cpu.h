@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 
+#include "core/sky.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/radiance_volume.h"
 #include "propagation/scheme.h"
@@ -17,6 +18,9 @@ class TransportCpu {
   virtual ~TransportCpu() = default;
   /// Starts an order. @param sent  power per side (rgb) [W], >= 0; w is not looked at. Need not outlive the call.
   virtual void begin(std::span<const glm::vec4> sent) = 0;
+  /// From the next begin() on, a sky's light streams in at the grid's rim; null: it is black outside. A scheme without
+  /// directions of its own knows no sky.
+  virtual void stream_in(const Sky* /*sky*/) {}
   /// Carries the order on, by at most `max_passes` passes over the volume.
   /// @param received  power per side (rgb) [W], added to; w stays.
   /// @param report    passes are added, and, when the order ends, the power that was left in flight.

@@ -1,4 +1,5 @@
 #pragma once
+#include "core/sky.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/radiance_volume_gl.h"
 #include "voxel/voxel_grid_gl.h"
@@ -17,6 +18,8 @@ class TransportGl {
   /// @param report    passes, and power that was left in flight, are added.
   virtual void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                      const BounceRules& rules, BounceReport& report) = 0;
+  /// As TransportCpu::stream_in.
+  virtual void stream_in(const Sky* /*sky*/) {}
   /// Radiance that `sent` (all orders together) makes in free space.
   virtual RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) = 0;
   /// Whether an order takes a number of passes that rules.iterations can set.

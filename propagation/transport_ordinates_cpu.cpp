@@ -12,6 +12,7 @@
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 
+#include "propagation/rim_inflow.h"
 #include "voxel/cell_volumes.h"
 
 namespace volgi {
@@ -57,20 +58,36 @@ int octets_of(int directions) {
   return octets;
 }
 
+struct Lane {
+  int lane;
+  size_t direction;
+  int band;
+};
+
+/// Where directions and bands lie (sweep::Constants).
+std::vector<Lane> lanes_of(int directions) {
+  const int in_quads = std::min(directions, 2 * octets_of(directions));
+  std::vector<Lane> lanes;
+  for (int d = 0; d < directions; ++d) {
+    for (int band = 0; band < 3; ++band) {
+      const int fourth = kOctet * ((d - in_quads) / 2 * 3 + band) + sweep::kQuad * (d & 1) + 3;
+      lanes.push_back({d < in_quads ? sweep::kQuad * d + band : fourth, size_t(d), band});
+    }
+  }
+  return lanes;
+}
+
 sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float cell_size_m) {
   sweep::Constants c;
   const int directions = int(set.directions.size());
   c.octets = octets_of(directions);
   assert(c.octets <= sweep::kMaxOctets);
+  for (const Lane& l : lanes_of(directions)) set_lane(c, l.lane, set, l.direction, rule, cell_size_m);
   const int in_quads = std::min(directions, 2 * c.octets);
-  for (int d = 0; d < in_quads; ++d) {
-    for (int band = 0; band < 3; ++band) set_lane(c, sweep::kQuad * d + band, set, size_t(d), rule, cell_size_m);
-  }
   // Two directions more in the fourth lanes of three octets, one band each.
   for (int d = in_quads; d < directions; ++d) {
     for (int band = 0; band < 3; ++band) {
       const int octet = (d - in_quads) / 2 * 3 + band;
-      set_lane(c, kOctet * octet + sweep::kQuad * (d & 1) + 3, set, size_t(d), rule, cell_size_m);
       c.fourth[octet] = band;
       c.fold[octet][band] = 1.0f;
     }
@@ -210,6 +227,42 @@ void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
   });
 }
 
+void OrdinatesTransportCpu::stream_in(const Sky* sky) {
+  streams_in_ = sky != nullptr;
+  if (sky != nullptr && sky->id() != inflow_of_) make_inflow(*sky);
+}
+
+/// The step kernel is handed the power of a cell, of which the upwind faces' shares are what comes in: the same cell
+/// for all three. The characteristic one is handed the power through the face.
+void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
+  inflow_of_ = sky.id();
+  const OrdinateSet set = ordinate_set(choice_.directions);
+  const size_t n = set.directions.size();
+  const std::vector<glm::vec3> flux = rim_inflow(sky, set);
+  for (size_t octant = 0; octant < 8; ++octant) {
+    for (Floats& lanes : inflow_[octant]) lanes.assign(sweep::kMaxLanes, 0.0f);
+    for (const Lane& l : lanes_of(int(n))) {
+      glm::vec3 handed =
+          inflow_per_flux(set, l.direction, voxels_.grid().cell_size_m) * flux[octant * n + l.direction][l.band];
+      if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[l.direction]).share[0];
+      for (int axis = 0; axis < 3; ++axis) inflow_[octant][size_t(axis)][size_t(l.lane)] = handed[axis];
+    }
+  }
+}
+
+/// Planes of an octant's flow before its sweep: those across y and z of all rows.
+void OrdinatesTransportCpu::fill_rim(int octant) {
+  Flow& flow = flows_[size_t(octant)];
+  const auto fill = [&](Floats& plane, std::vector<unsigned char>& lit, int axis) {
+    std::fill(lit.begin(), lit.end(), static_cast<unsigned char>(1));
+    for (size_t face = 0; face < lit.size(); ++face)
+      kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][size_t(axis)].data(),
+                         plane.data() + face * face_floats());
+  };
+  fill(flow.y, flow.y_lit, 1);
+  fill(flow.z, flow.z_lit, 2);
+}
+
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
@@ -244,6 +297,7 @@ void OrdinatesTransportCpu::sweep_octant(int octant, bool threaded, RadianceLeav
   Flow& flow = flows_[size_t(octant)];
   std::fill(flow.y_lit.begin(), flow.y_lit.end(), static_cast<unsigned char>(0));
   std::fill(flow.z_lit.begin(), flow.z_lit.end(), static_cast<unsigned char>(0));
+  if (streams_in_) fill_rim(octant);
   if (!threaded) {
     for (int z = 0; z < n.z; ++z) {
       for (int y = 0; y < n.y; ++y) sweep_row(octant, y, z, leaves);
@@ -264,7 +318,8 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
   const size_t face = face_floats();
   Flow& flow = flows_[size_t(octant)];
   alignas(64) float x_carried[sweep::kBlockFace * sweep::kMaxLanes];
-  unsigned char x_lit = 0;
+  unsigned char x_lit = streams_in_ ? 1 : 0;
+  if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
   const sweep::Kernel kernel =
       kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);
   for (int x = 0; x < n.x; ++x) {

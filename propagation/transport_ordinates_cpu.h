@@ -28,6 +28,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
 
   void begin(std::span<const glm::vec4> sent) override;
+  void stream_in(const Sky* sky) override;
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return false; }
   bool linear() const override { return true; }
@@ -49,6 +50,8 @@ class OrdinatesTransportCpu : public TransportCpu {
   struct RadianceLeaves;
 
   void pack_sides();
+  void make_inflow(const Sky& sky);
+  void fill_rim(int octant);
   void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
   void sweep_row(int octant, int y, int z, RadianceLeaves* leaves);
   size_t face_floats() const { return face_floats(constants_.octets); }
@@ -59,6 +62,10 @@ class OrdinatesTransportCpu : public TransportCpu {
   sweep::Kernels kernels_;
   sweep::Constants constants_;
   std::array<Flow, 8> flows_;
+  /// What blocks at the rim find where light comes in, by octant and axis: one row of lanes.
+  std::array<std::array<Floats, 3>, 8> inflow_;
+  std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
+  bool streams_in_ = false;
   // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
   std::vector<sweep::BlockSides> block_sides_;
   std::vector<int> sides_of_block_;   // index into block_sides_, or -1

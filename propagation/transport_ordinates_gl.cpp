@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "propagation/rim_inflow.h"
 #include "shaders/propagation/slots.shared.h"
 #include "shaders/propagation/sweep.shared.h"
 #include "shaders/shared/group_sizes.shared.h"
@@ -39,7 +40,8 @@ OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, int directions, Ord
       lanes_(3 * quads_of(directions)),
       prepare_(gl::Program::compute("propagation/prepare_sweep.comp.glsl")),
       collect_(gl::Program::compute("propagation/collect_octants.comp.glsl")),
-      shares_(pack_shares(ordinate_set(directions))) {
+      shares_(pack_shares(ordinate_set(directions))),
+      inflow_(3 * 8 * size_t(lanes_) * sizeof(glm::vec4)) {
   sweep_ = gl::Program::compute("propagation/sweep.comp.glsl",
                                 {fmt::format("QUADS {}", quads_of(directions)),
                                  fmt::format("CHARACTERISTIC {}", int(rule == Ordinates::characteristic))});
@@ -102,8 +104,32 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+void OrdinatesTransportGl::stream_in(const Sky* sky) {
+  streams_in_ = sky != nullptr;
+  if (sky == nullptr || sky->id() == inflow_of_) return;
+  inflow_of_ = sky->id();
+  const OrdinateSet set = ordinate_set(choice_.directions);
+  const std::vector<glm::vec3> flux = rim_inflow(*sky, set);
+  const size_t n = set.directions.size(), quads = size_t(lanes_ / 3);
+  std::vector<glm::vec4> values(8 * size_t(lanes_) * 3, glm::vec4(0.0f));
+  for (size_t octant = 0; octant < 8; ++octant) {
+    for (size_t d = 0; d < n; ++d) {
+      const glm::vec3 per_flux = inflow_per_flux(set, d, grid_.cell_size_m);
+      for (size_t band = 0; band < 3; ++band) {
+        const size_t lane = octant * size_t(lanes_) + band * quads + d / 4;
+        for (size_t axis = 0; axis < 3; ++axis)
+          values[3 * lane + axis][glm::length_t(d % 4)] =
+              per_flux[glm::length_t(axis)] * flux[octant * n + d][glm::length_t(band)];
+      }
+    }
+  }
+  gl::put(inflow_, values);
+}
+
 void OrdinatesTransportGl::sweep() {
   shares_.bind_storage(SHARES_SLOT);
+  inflow_.bind_storage(INFLOW_SLOT);
+  sweep_.set("streams_in", streams_in_ ? 1 : 0);
   cell_word_.bind(CELL_WORD_UNIT);
   side_light_.bind(SIDE_LIGHT_UNIT);
   block_list_.bind(BLOCK_LIST_UNIT);

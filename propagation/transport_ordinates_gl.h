@@ -28,6 +28,8 @@ class OrdinatesTransportGl : public TransportGl {
 
   void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received, const BounceRules& rules,
              BounceReport& report) override;
+  void stream_in(const Sky* sky) override;
+  /// Of what sides send: the sky's own light is not in it.
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return false; }
   size_t bytes() const override;
@@ -51,7 +53,9 @@ class OrdinatesTransportGl : public TransportGl {
   int lanes_;  // invocations of one block and octant: three bands of as many quads of directions
   gl::Program prepare_, sweep_, collect_;
   std::unique_ptr<SweepRadianceGl> read_out_;  // made on first use
-  gl::Buffer shares_;
+  gl::Buffer shares_, inflow_;
+  std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
+  bool streams_in_ = false;
   gl::Texture faces_[3];                          // by axis: what leaves cells through downwind faces
   gl::Texture cell_word_, side_light_, arrived_;  // prepare_sweep.comp.glsl, sweep.comp.glsl
   gl::Texture block_list_;

@@ -128,7 +128,7 @@ void VolumeCpu::light_in(SideFlux flux) {
 
 void VolumeCpu::propagate() {
   if (bounces_) {
-    report_ = bounces_->run(voxels_, flux_, flux_.emits, rules_);
+    report_ = bounces_->run(voxels_, flux_, flux_.emits, rules_, streaming_sky(scene_, options_));
     return;
   }
   std::vector<glm::vec4> all = flux_.punctual;
@@ -154,7 +154,9 @@ const CellVolumes& VolumeCpu::cells() {
 }
 
 RadianceVolume VolumeCpu::radiance() {
+  if (bounces_) bounces_->transport().stream_in(streaming_sky(scene_, options_));
   RadianceVolume volume = pulse_ ? pulse_->radiance() : bounces_->transport().radiance(bounces_->sent(voxels_, flux_));
+  if (bounces_) bounces_->transport().stream_in(nullptr);
   for (auto& grid : volume.sh) grid->setTransform(world_from_index(grid_, scene_.world_origin));
   return volume;
 }

@@ -31,6 +31,11 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   return rules;
 }
 
+const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
+  const bool carries = o.scheme.scheme == Scheme::ordinates && o.source == VolumeOptions::Source::lights;
+  return carries ? scene.sky.get() : nullptr;
+}
+
 void refuse_on_gpu(const VolumeOptions& o) {
   if (o.voxelization.method == VoxelizationMethod::single_pass && o.voxelization.interleave)
     throw Error(ExitCode::usage, "voxel.interleave=1 takes turns at axes, which voxel.method=single_pass has not");

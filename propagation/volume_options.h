@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/scene.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/scheme.h"
 #include "voxel/voxelization_options.h"
@@ -36,6 +37,10 @@ struct VolumeOptions {
 /// The solver's rules for a scene. @throws Error(usage) for combinations that make no sense, in words of the command
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
+
+/// The sky whose light streams into the volume: of `ordinates` alone, and not after a first bounce on the screen, which
+/// has it. Null: none.
+const Sky* streaming_sky(const Scene& scene, const VolumeOptions& options);
 
 /// @throws Error(usage) for what the other backend alone can do, and for what neither can.
 void refuse_on_gpu(const VolumeOptions& options);

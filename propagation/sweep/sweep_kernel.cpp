@@ -3,7 +3,7 @@
 
 namespace volgi::sweep {
 
-Kernels baseline() { return {"baseline", kernel}; }
+Kernels baseline() { return {"baseline", kernel, fill_face}; }
 
 Available available() {
   Available a;

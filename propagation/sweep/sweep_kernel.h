@@ -58,6 +58,8 @@ struct Kernels {
   const char* name;
   /// @param octets  1, 2, 3, 4 or 6; null for others.
   Kernel (*kernel)(bool characteristic, int octets, bool radiance);
+  /// The same lanes for all 64 places of a block's face.
+  void (*fill_face)(int octets, const float* lanes, float* face);
 };
 
 Kernels baseline();

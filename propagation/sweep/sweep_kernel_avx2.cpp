@@ -3,6 +3,6 @@
 
 namespace volgi::sweep {
 
-Kernels avx2() { return {"avx2", kernel}; }
+Kernels avx2() { return {"avx2", kernel, fill_face}; }
 
 }  // namespace volgi::sweep

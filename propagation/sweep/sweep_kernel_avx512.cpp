@@ -3,6 +3,6 @@
 
 namespace volgi::sweep {
 
-Kernels avx512() { return {"avx512", kernel}; }
+Kernels avx512() { return {"avx512", kernel, fill_face}; }
 
 }  // namespace volgi::sweep

@@ -281,6 +281,30 @@ Kernel kernel_of(int octets, bool radiance) {
       return nullptr;
   }
 }
+template <int kOctets>
+void fill(const float* lanes, float* face) {
+  for (int row = 0; row < kBlockCells; ++row, face += kBlockCells * kOctets * kOctet) {
+    for_octets<kOctets>([&]<int kLanes>(Width<kLanes>, int octet) {
+      const Vec<kLanes> values = load<kLanes>(lanes + octet * kOctet);
+      for (int i = 0; i < kBlockCells; ++i) store<kLanes>(face + place_in_row<kLanes>(octet, i), values);
+    });
+  }
+}
+void fill_face(int octets, const float* lanes, float* face) {
+  switch (octets) {
+    case 1:
+      return fill<1>(lanes, face);
+    case 2:
+      return fill<2>(lanes, face);
+    case 3:
+      return fill<3>(lanes, face);
+    case 4:
+      return fill<4>(lanes, face);
+    default:
+      return fill<6>(lanes, face);
+  }
+}
+
 Kernel kernel(bool characteristic, int octets, bool radiance) {
   return characteristic ? kernel_of<Characteristic>(octets, radiance) : kernel_of<Step>(octets, radiance);
 }

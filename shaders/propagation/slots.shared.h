@@ -34,6 +34,7 @@
 #define WEIGHTED_INDIRECT_SLOT 11
 #define DIRECT_IRRADIANCE_SLOT 6
 #define INDIRECT_IRRADIANCE_SLOT 7
+#define DIRECT_SUM_SLOT 8
 
 // Lobes, of `conservative` and of pulses.
 #define LOBES_UNIT 0
@@ -54,6 +55,7 @@
 
 #define BLOCK_LIST_UNIT 3
 #define SHARES_SLOT 6
+#define INFLOW_SLOT 8
 #define FACES_IMAGE 0  // across x; those across y and z follow
 #define ARRIVED_IMAGE 3
 #define ARRIVED_UNIT 0

@@ -22,6 +22,9 @@ struct QuadShares {
   vec4 downwind[CHARACTERISTIC != 0 ? 9 : 3];
 };
 layout(std430, binding = SHARES_SLOT) readonly buffer Shares { QuadShares shares[QUADS]; };
+// What comes in from outside through a face of the rim [W], by octant, lane and axis.
+layout(std430, binding = INFLOW_SLOT) readonly buffer Inflow { vec4 inflow[]; };
+uniform int streams_in;
 layout(binding = CELL_WORD_UNIT) uniform usampler3D cell_word;    // (first side << 6) | faces (prepare_sweep)
 layout(binding = SIDE_LIGHT_UNIT) uniform sampler2D side_light;   // rgb sent [W], a: 1 - tau
 layout(binding = BLOCK_LIST_UNIT) uniform usampler2D block_list;  // of all diagonals: x | y << 8 | z << 16
@@ -39,6 +42,7 @@ const int TILE = 4;
 int lane = int(gl_LocalInvocationID.x), octant = int(gl_LocalInvocationID.y);
 int band = lane / QUADS;
 QuadShares own = shares[lane % QUADS];
+vec4 from_outside[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
 // Flow coordinates grow along the octant's flow: cell = cell_of_flow_0 + cell_step * flow.
 ivec3 positive = ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
 ivec3 cell_of_flow_0 = (1 - positive) * (grid.cells - 1), cell_step = 2 * positive - 1;
@@ -91,14 +95,14 @@ void carry_cell(ivec3 flow, inout vec4 x, inout vec4 y, inout vec4 z) {
   z = out_z;
 }
 
-// Place of a face in its plane; nothing comes from outside the grid.
+// Place of a face in its plane.
 ivec3 in_plane(int u, int v) { return ivec3(octant * 3 * QUADS + lane, u, v); }
 // A macro, because a parameter of a function has no image format.
-#define COME_IN(faces, u, v, inside) ((inside) ? imageLoad(faces, in_plane(u, v)) : vec4(0.0))
+#define COME_IN(faces, axis, u, v, inside) ((inside) ? imageLoad(faces, in_plane(u, v)) : from_outside[axis])
 
 // Four cells along x. Indices are literal wherever registers are meant.
 void carry_row(ivec3 first, inout vec4 y[TILE], inout vec4 z[TILE * TILE]) {
-  vec4 x = COME_IN(x_faces, first.y, first.z, first.x > 0);
+  vec4 x = COME_IN(x_faces, 0, first.y, first.z, first.x > 0);
   carry_cell(first, x, y[0], z[0]);
   carry_cell(first + ivec3(1, 0, 0), x, y[1], z[1]);
   carry_cell(first + ivec3(2, 0, 0), x, y[2], z[2]);
@@ -117,9 +121,9 @@ void turn_rows(inout vec4 z[TILE * TILE]) {
 void carry_tile(ivec3 first, int end_z) {
   vec4 through_y[TILE], through_z[TILE * TILE];  // what comes into the next cells [W]
   for (int i = 0; i < TILE * TILE; ++i)
-    through_z[i] = COME_IN(z_faces, first.x + i % TILE, first.y + i / TILE, first.z > 0);
+    through_z[i] = COME_IN(z_faces, 2, first.x + i % TILE, first.y + i / TILE, first.z > 0);
   for (int z = first.z; z < end_z; ++z) {
-    for (int x = 0; x < TILE; ++x) through_y[x] = COME_IN(y_faces, first.x + x, z, first.y > 0);
+    for (int x = 0; x < TILE; ++x) through_y[x] = COME_IN(y_faces, 1, first.x + x, z, first.y > 0);
     for (int y = 0; y < TILE; ++y) {
       carry_row(ivec3(first.x, first.y + y, z), through_y, through_z);
       turn_rows(through_z);
@@ -131,6 +135,10 @@ void carry_tile(ivec3 first, int end_z) {
 }
 
 void main() {
+  if (streams_in != 0) {
+    int at = 3 * (octant * 3 * QUADS + lane);
+    from_outside = vec4[3](inflow[at], inflow[at + 1], inflow[at + 2]);
+  }
   int n = first_block + int(gl_WorkGroupID.x);
   uint block = texelFetch(block_list, ivec2(n & ((1 << DIAGONAL_ROW_BITS) - 1), n >> DIAGONAL_ROW_BITS), 0).x;
   ivec3 first = BLOCK * ivec3(block & 255u, (block >> 8) & 255u, block >> 16);

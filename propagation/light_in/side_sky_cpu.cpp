@@ -1,0 +1,58 @@
+#include "propagation/light_in/side_sky_cpu.h"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "propagation/light_in/side_gather_cpu.h"
+#include "propagation/light_in/side_start_internal.h"
+
+namespace volgi {
+namespace {
+
+glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size_t s, std::span<const SkyLight> parts,
+                        int stride) {
+  const shared::Side& side = voxels.sides()[s];
+  const SideStart start = start_of_side(voxels, embree, side);
+  const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
+  glm::vec3 sum(0.0f);
+  for (size_t k = size_t(first_light_of_side(cell, side.face, stride)); k < parts.size(); k += size_t(stride)) {
+    const glm::vec3 towards = -parts[k].direction;
+    const float cosine = glm::dot(towards, side.normal);
+    if (cosine <= 0.0f) continue;
+    const std::uint32_t seed = std::uint32_t(s) * 2654435769u + std::uint32_t(k);
+    if (embree.occluded({start.origin, towards, std::numeric_limits<float>::infinity(), seed, start.from, {}}))
+      continue;
+    sum += cosine * parts[k].irradiance;
+  }
+  return sum * float(stride);
+}
+
+}  // namespace
+
+const std::vector<glm::vec4>& SideSkyCpu::irradiance(const VoxelGrid& voxels, const EmbreeScene& embree,
+                                                     std::span<const SkyLight> parts, int version) {
+  const size_t count = voxels.side_count();
+  const bool same = version == version_ && count == sides_.size() &&
+                    std::memcmp(sides_.data(), voxels.sides().data(), count * sizeof(shared::Side)) == 0;
+  if (same) return irradiance_;
+  version_ = version;
+  sides_.assign(voxels.sides().begin(), voxels.sides().end());
+  irradiance_.resize(count);
+  const int stride = std::max(int(parts.size()) / kRays, 1);
+  tbb::parallel_for(size_t(0), count, [&](size_t s) {
+    irradiance_[s] = glm::vec4(irradiance_of(voxels, embree, s, parts, stride), 0.0f);
+  });
+  return irradiance_;
+}
+
+void add_sky(const VoxelGrid& voxels, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux) {
+  const std::vector<glm::vec4> reflected = reflected_flux(voxels, irradiance);
+  std::vector<glm::vec4>& into = apart ? flux.emitted : flux.punctual;
+  for (size_t s = 0; s < reflected.size(); ++s) into[s] += reflected[s];
+  if (apart) flux.emits = true;
+}
+
+}  // namespace volgi
