@@ -1,5 +1,6 @@
 #include "screen/base/compose.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -15,7 +16,8 @@ Compose::Compose(glm::ivec2 size)
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }
 
-void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, gl::PassTimer& timer) {
+void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, const gl::Texture* background,
+                  gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   if (layers.size() > MAX_LAYERS) {
     throw Error(ExitCode::over_limit, "a picture of " + std::to_string(layers.size()) + " layers: at most " +
@@ -27,6 +29,8 @@ void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> la
   for (size_t i = 0; i < layers.size(); ++i) layers[i]->bind(GLuint(COMPOSE_LAYERS_UNIT + i));
   program_.use();
   program_.set("layer_count", int(layers.size()));
+  const auto behind = std::find(layers.begin(), layers.end(), background);
+  program_.set("background_layer", behind == layers.end() ? -1 : int(behind - layers.begin()));
   gl::draw_fullscreen_triangle();
 }
 

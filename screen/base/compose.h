@@ -9,7 +9,7 @@
 
 namespace volgi::screen {
 
-/// Pass "screen/base/compose": the sum of radiance layers, in their order; black in the background.
+/// Pass "screen/base/compose": the sum of radiance layers, in their order.
 class Compose {
  public:
   static constexpr const char* name = "screen/base/compose";
@@ -17,7 +17,9 @@ class Compose {
   static constexpr size_t MAX_LAYERS = COMPOSE_LAYERS;
   /// @param layers  RGBA32F of the G-buffer's size; each light path in one of them only, which the caller sees to.
   /// @throws Error(over_limit) above MAX_LAYERS.
-  void run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, gl::PassTimer& timer);
+  /// @param background  the one of `layers` that is shown where there is no geometry; null, or none of them: black.
+  void run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, const gl::Texture* background,
+           gl::PassTimer& timer);
 
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
   size_t bytes() const { return 16 * size_t(radiance_.size().x) * size_t(radiance_.size().y); }

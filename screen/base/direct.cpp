@@ -6,20 +6,24 @@
 
 namespace volgi::screen {
 
-Direct::Direct(glm::ivec2 size)
+Direct::Direct(glm::ivec2 size, bool shines)
     : radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl")) {
+      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl",
+                                   shines ? std::vector<std::string>{"SHINES"} : std::vector<std::string>{})) {
   const std::array colors{gl::Framebuffer::Attachment{&radiance_}};
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }
 
-void Direct::run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
+void Direct::run(const GBuffer& gbuffer, const Camera& camera, const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   gl::begin_fullscreen_pass(/*add=*/true);
   framebuffer_.bind();
   constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
   glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, 0, zero.data());
   gbuffer.bind();
+  if (gbuffer.shines()) gbuffer.bind_shine();
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
   program_.use();
   for (int light = 0; light < maps.light_count(); ++light) {
     maps.bind(light);

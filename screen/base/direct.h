@@ -12,8 +12,9 @@ namespace volgi::screen {
 class Direct {
  public:
   static constexpr const char* name = "screen/base/direct";
-  explicit Direct(glm::ivec2 size);
-  void run(const GBuffer& gbuffer, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+  /// @param shines  as the G-buffer that it reads.
+  explicit Direct(glm::ivec2 size, bool shines = false);
+  void run(const GBuffer& gbuffer, const Camera& camera, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
 
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
   size_t bytes() const { return 16 * size_t(radiance_.size().x) * size_t(radiance_.size().y); }

@@ -16,26 +16,38 @@ class GBuffer {
   static constexpr const char* name = "screen/base/gbuffer";
   /// @param normal_format  of normals(); RGBA32F, twice as large, where this GPU cannot render to it: GL does not
   /// require that of signed normalised formats.
-  explicit GBuffer(glm::ivec2 size, GLenum normal_format = GL_RGBA16_SNORM);
+  /// @param shines  some material is not Lambertian: diffuse() and mirror() are there.
+  explicit GBuffer(glm::ivec2 size, GLenum normal_format = GL_RGBA16_SNORM, bool shines = false);
   void run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassTimer& timer);
+
+  /// Where in its pixel every sample lies, from the centre. [pixels]
+  void set_jitter(glm::vec2 from_centre) { jitter_ = from_centre; }
 
   glm::ivec2 size() const { return size_; }
   /// Positions, normals and albedo, for shaders with screen/base/gbuffer.glsl.
   void bind() const;
-  size_t bytes() const { return (4 + 16 + 8 + 8 + 16 + 4) * size_t(size_.x) * size_t(size_.y); }
+  /// Those of surfaces that shine, beside them.
+  void bind_shine() const;
+  bool shines() const { return shines_; }
+  size_t bytes() const { return (4 + 16 + 8 + 8 + 16 + 4 + (shines_ ? 16 : 0)) * size_t(size_.x) * size_t(size_.y); }
   const gl::Texture& depth() const { return depth_; }        // D32F, 1 at znear, 0 at zfar and in the background
   const gl::Texture& position() const { return position_; }  // RGBA32F, centred frame; w = 1, or 0 in the background
   const gl::Texture& normals() const {
     return normals_;
-  }                                                            // normal_format: octahedral shading (xy), geometric (zw)
-                                                               // normal, both on the viewer's side of the triangle
-  const gl::Texture& albedo() const { return albedo_; }        // RGBA16, linear
+  }  // normal_format: octahedral shading (xy), geometric (zw)
+     // normal, both on the viewer's side of the triangle
+  // RGBA16, linear: of even light, what goes to the viewer
+  const gl::Texture& albedo() const { return albedo_; }
+  const gl::Texture& diffuse() const { return diffuse_; }      // RGBA16: shared::Reflectance, and perceptual roughness
+  const gl::Texture& mirror() const { return mirror_; }        // RGBA16: reflectance from in front, at grazing angles
   const gl::Texture& emission() const { return emission_; }    // RGBA32F, radiance towards the viewer
   const gl::Texture& object_id() const { return object_id_; }  // R32UI, Mesh::object_id; 0 in the background
 
  private:
   glm::ivec2 size_;
-  gl::Texture depth_, position_, normals_, albedo_, emission_, object_id_;
+  bool shines_;
+  glm::vec2 jitter_{0.0f};
+  gl::Texture depth_, position_, normals_, albedo_, emission_, object_id_, diffuse_, mirror_, directional_albedo_;
   gl::Framebuffer framebuffer_;
   gl::Program program_;
 };

@@ -10,7 +10,7 @@ namespace volgi::screen {
 struct VirtualLightListGl {
   static constexpr const char* product_name = "virtual lights";
   gl::Buffer buffer;          // shared::VirtualLight, padded_count() of them; zeros behind the last
-  std::vector<int> of_light;  // reflected ones, of each punctual light in its order
+  std::vector<int> of_light;  // reflected ones, of each punctual light in its order, then of the sky if there is one
   int reflected = 0;          // lights [0, reflected): the sum of of_light
   int emitted = 0;            // lights [reflected, reflected + emitted)
   int count() const { return reflected + emitted; }

@@ -5,7 +5,9 @@
 
 #include "core/error.h"
 #include "core/gl/context.h"
+#include "core/halton.h"
 #include "core/log.h"
+#include "core/surface.h"
 #include "screen/frame/registry.h"
 
 namespace volgi::screen {
@@ -22,8 +24,8 @@ Frame::Frame(const Scene& scene, const FrameOptions& options, Recipe recipe)
       recipe_(std::move(recipe)),
       buffers_(scene),
       shadow_maps_(options.of<ReflectiveShadowMap::Resolution>()),
-      gbuffer_(options.size),
-      direct_(options.size),
+      gbuffer_(options.size, GL_RGBA16_SNORM, shines(scene)),
+      direct_(options.size, gbuffer_.shines()),
       compose_(options.size) {
   follow_with_stages();
 }
@@ -71,9 +73,18 @@ void Frame::warn_of_missing_light(LightPaths missing) const {
   }
 }
 
+void Frame::set_sample(int index, int count, bool jitter) {
+  buffers_.set_sample(float(index) / float(count));
+  gbuffer_.set_jitter(jitter && count > 1 ? glm::vec2(halton(std::uint64_t(index) + 1)) - 0.5f : glm::vec2(0.0f));
+}
+
 void Frame::render(const Camera& camera, gl::PassTimer& timer) {
   shadow_maps_.run(buffers_, scene_, timer);
   gbuffer_.run(buffers_, camera, timer);
+  if (scene_.sky) {
+    if (!sky_seen_) sky_seen_.emplace(gbuffer_);
+    sky_seen_->run(*scene_.sky, camera, timer);
+  }
   FrameData frame{.scene = scene_,
                   .triangles = buffers_,
                   .camera = camera,
@@ -93,10 +104,10 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
     layers.insert(layers.begin(), frame.layers.begin(), frame.layers.end());
     frame.layers.clear();
   }
-  direct_.run(gbuffer_, shadow_maps_, timer);
+  direct_.run(gbuffer_, camera, shadow_maps_, timer);
   layers.insert(layers.begin(), {RadianceLayer{&direct_.radiance(), {LightPath::punctual_direct}},
-                                 RadianceLayer{&gbuffer_.emission(), {LightPath::emission_seen}}});
-  compose_.run(gbuffer_, shown(layers), timer);
+                                 RadianceLayer{&gbuffer_.emission(), {LightPath::emission_seen, LightPath::sky_seen}}});
+  compose_.run(gbuffer_, shown(layers), scene_.sky ? &gbuffer_.emission() : nullptr, timer);
 }
 
 /// Direct light, then indirect, of what --light asks for.
@@ -113,7 +124,8 @@ std::vector<const gl::Texture*> Frame::shown(std::span<const RadianceLayer> laye
 
 FrameReport Frame::report() const {
   FrameReport r;
-  r.memory_bytes = buffers_.bytes() + shadow_maps_.bytes() + gbuffer_.bytes() + direct_.bytes() + compose_.bytes();
+  r.memory_bytes = buffers_.bytes() + shadow_maps_.bytes() + gbuffer_.bytes() + direct_.bytes() + compose_.bytes() +
+                   (sky_seen_ ? sky_seen_->bytes() : 0);
   for (const Step& step : steps_) step.stage->report(r);
   return r;
 }

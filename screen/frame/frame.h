@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "screen/base/direct.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/reflective_shadow_map.h"
+#include "screen/base/sky_seen.h"
 #include "screen/frame/frame_options.h"
 #include "screen/frame/frame_report.h"
 #include "screen/frame/plan.h"
@@ -31,6 +33,9 @@ class Frame {
   Frame& operator=(const Frame&) = delete;
 
   void render(const Camera& camera, gl::PassTimer& timer);
+  /// Of `count` pictures that the caller averages, the one that render() makes next: BLEND covers other pixels, and
+  /// with `jitter` pixels are looked at in other places (a Halton sequence) than their centres.
+  void set_sample(int index, int count, bool jitter);
   /// The scene has changed in place (SceneSource::move): meshes, lights, bounds and origin, but neither materials nor
   /// textures nor images. The next render() shows what a new Frame would, unless options have stages start from their
   /// last answer; programs, textures, maps and buffers stay. Where the bounds make another grid the volume is made
@@ -64,6 +69,7 @@ class Frame {
   ReflectiveShadowMap shadow_maps_;
   GBuffer gbuffer_;
   Direct direct_;
+  std::optional<SkySeen> sky_seen_;  // where there is a sky
   Compose compose_;
   std::vector<Step> steps_;
 };

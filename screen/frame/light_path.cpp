@@ -20,6 +20,14 @@ const char* in_words(LightPath path) {
       return "higher bounces of punctual light";
     case LightPath::emission_higher:
       return "higher bounces of emission";
+    case LightPath::sky_seen:
+      return "the sky seen by the camera";
+    case LightPath::sky_direct:
+      return "light straight from the sky";
+    case LightPath::sky_first:
+      return "the first reflection of sky light";
+    case LightPath::sky_higher:
+      return "higher bounces of sky light";
   }
   return "";
 }
@@ -41,7 +49,8 @@ LightPaths asked_paths(LightPart part, std::optional<int> bounces) {
   LightPaths asked = LightPaths::all();
   if (part == LightPart::direct || bounces == 0) asked = DIRECT_PATHS;
   if (part == LightPart::indirect) asked = asked & INDIRECT_PATHS;
-  if (bounces == 1) asked = asked - LightPaths{LightPath::punctual_higher, LightPath::emission_higher};
+  if (bounces == 1)
+    asked = asked - LightPaths{LightPath::punctual_higher, LightPath::emission_higher, LightPath::sky_higher};
   return asked;
 }
 

@@ -21,8 +21,12 @@ enum class LightPath : std::uint8_t {
   emission_first,   // emission after one reflection, bounce 1
   punctual_higher,  // bounces 2 ... n
   emission_higher,  // bounces 2 ... n
+  sky_seen,         // from the sky to the camera
+  sky_direct,       // light straight from the sky on the visible surface
+  sky_first,        // sky light after one reflection, bounce 1
+  sky_higher,       // bounces 2 ... n
 };
-inline constexpr int LIGHT_PATH_COUNT = 7;
+inline constexpr int LIGHT_PATH_COUNT = 11;
 
 /// A set of them.
 class LightPaths {
@@ -46,11 +50,13 @@ class LightPaths {
 };
 
 inline constexpr LightPaths DIRECT_PATHS{LightPath::emission_seen, LightPath::punctual_direct,
-                                         LightPath::emission_direct};
+                                         LightPath::emission_direct, LightPath::sky_seen, LightPath::sky_direct};
 inline constexpr LightPaths INDIRECT_PATHS = LightPaths::all() - DIRECT_PATHS;
 inline constexpr LightPaths EMISSION_PATHS{LightPath::emission_seen, LightPath::emission_direct,
                                            LightPath::emission_first, LightPath::emission_higher};
-inline constexpr LightPaths PUNCTUAL_PATHS = LightPaths::all() - EMISSION_PATHS;
+inline constexpr LightPaths SKY_PATHS{LightPath::sky_seen, LightPath::sky_direct, LightPath::sky_first,
+                                      LightPath::sky_higher};
+inline constexpr LightPaths PUNCTUAL_PATHS = LightPaths::all() - EMISSION_PATHS - SKY_PATHS;
 
 /// What a layer or a stage has of its paths. `near` and `far` are the two parts of a whole.
 enum class LightShare { whole, near, far };

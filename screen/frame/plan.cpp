@@ -114,8 +114,10 @@ const char* slot_name(Slot slot) {
 }
 
 LightPaths paths_in(const Scene& scene) {
-  if (scene.triangle_count() == 0) return {};
   LightPaths paths;
+  if (scene.sky) paths = paths | LightPaths{LightPath::sky_seen};
+  if (scene.triangle_count() == 0) return paths;
+  if (scene.sky) paths = paths | SKY_PATHS;
   if (!scene.lights.empty()) paths = paths | PUNCTUAL_PATHS;
   for (const Mesh& mesh : scene.meshes) {
     if (scene.materials[size_t(mesh.material)].is_emissive() && !mesh.triangles.empty()) paths = paths | EMISSION_PATHS;

@@ -6,8 +6,8 @@
 
 namespace volgi::screen {
 
-/// Passes of every picture carry these (screen/base): emission seen, and punctual light with shadow maps.
-inline constexpr LightPaths BASE_PATHS{LightPath::emission_seen, LightPath::punctual_direct};
+/// Passes of every picture carry these (screen/base): emission and sky seen, and punctual light with shadow maps.
+inline constexpr LightPaths BASE_PATHS{LightPath::emission_seen, LightPath::sky_seen, LightPath::punctual_direct};
 
 /// Which of a recipe's stages a picture needs.
 struct Plan {

@@ -12,6 +12,7 @@
 #include "screen/gather/strided/strided_stage.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
+#include "screen/sources/sky/sky_stage.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/negative/negative_stage.h"
 
@@ -21,34 +22,44 @@ namespace {
 
 // One line a technique.
 constexpr const StageType* STAGE_TYPES[] = {
-    &RSM_LIGHTS,         &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE,     &AREA_MAPS, &STRIDED_GATHER,
-    &INTERLEAVED_GATHER, &VOLUME,           &VOLUME_AFTER_FIRST_BOUNCE,
+    &SKY,
+    &RSM_LIGHTS,
+    &RESAMPLED_LIGHTS,
+    &NEGATIVE_LIGHTS_STAGE,
+    &AREA_MAPS,
+    &STRIDED_GATHER,
+    &INTERLEAVED_GATHER,
+    &VOLUME,
+    &VOLUME_AFTER_FIRST_BOUNCE,
 };
 
 using enum LightPath;
-constexpr LightPaths FIRST_ORDER{emission_direct, punctual_first};
+constexpr LightPaths FIRST_ORDER{emission_direct, punctual_first, sky_direct, sky_first};
 
 std::vector<Recipe> make_recipes() {
   return {
       {"hybrid",
        "the first bounce on the screen by clustered virtual lights, the others through the volume",
-       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &VOLUME_AFTER_FIRST_BOUNCE},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &VOLUME_AFTER_FIRST_BOUNCE},
        LightPaths::all()},
       {"volume", "all light but direct light through the volume", {&VOLUME}, LightPaths::all()},
       {"lpv", "volume --scheme lpv2009", {&VOLUME}, LightPaths::all(), &prefer_lpv},
       {"val",
        "one bounce by virtual lights, each as far as its cluster sees (Dong et al. 2009)",
-       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER},
-       FIRST_ORDER},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER},
+       FIRST_ORDER,
+       &prefer_sky_by_lights},
       {"negative",
        "one bounce by virtual lights, less what negative lights take away (Cochran and Steele 2007)",
-       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE, &STRIDED_GATHER},
-       FIRST_ORDER},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE, &STRIDED_GATHER},
+       FIRST_ORDER,
+       &prefer_sky_by_lights},
       {"vpl",
        "one bounce by virtual lights without shadows",
-       {&RSM_LIGHTS, &RESAMPLED_LIGHTS, &STRIDED_GATHER},
-       FIRST_ORDER},
-      {"none", "direct light of punctual lights alone", {}, {}},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &STRIDED_GATHER},
+       FIRST_ORDER,
+       &prefer_sky_by_lights},
+      {"none", "direct light of punctual lights and the sky alone", {&SKY}, {sky_direct}},
   };
 }
 

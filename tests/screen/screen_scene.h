@@ -142,7 +142,7 @@ inline DirectPicture render_direct(const gl::Context& context, const Scene& scen
   screen::Direct direct(size);
   gbuffer.run(buffers, camera, timer);
   maps.run(buffers, scene, timer);
-  direct.run(gbuffer, maps, timer);
+  direct.run(gbuffer, camera, maps, timer);
   DirectPicture picture{screen::image_from_texture(direct.radiance()),
                         screen::image_from_texture(gbuffer.albedo()),
                         screen::image_from_texture(gbuffer.emission()),

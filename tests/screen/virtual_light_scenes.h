@@ -27,7 +27,7 @@ class Frames {
   const screen::ReflectiveShadowMap& maps() const { return maps_; }
   const screen::VirtualLights& run() {
     maps_.run(buffers_, scene_, timer_);
-    lights_.run(maps_, timer_);
+    lights_.run(maps_, nullptr, timer_);
     return lights_;
   }
 

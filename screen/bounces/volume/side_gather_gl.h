@@ -4,6 +4,7 @@
 #include "propagation/side_flux_gl.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
+#include "screen/sources/sky/sky_maps.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -14,6 +15,7 @@ struct FirstBounce {
   const LightClusters& clusters;
   const VirtualLightSubdivision* subdivision;  // what lights those near it instead; null: nobody
   float near_zone;                             // areas of a light; 0 without subdivision
+  const SkyMaps* sky;  // whose arrival the screen carries, but not its first reflection; or null
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area

@@ -15,8 +15,10 @@ class VolumeGather {
   static constexpr const char* name = "screen/bounces/volume/volume_gather";
   explicit VolumeGather(glm::ivec2 size);
   /// @param direct_irradiance, indirect_irradiance  per side, vec4 [W m^-2]
+  /// @param seeps  direct light may have come into sealed cells, by maps that have texels: a hundredth of what sides
+  /// have in the mean counts as none, where a pixel looks for sides that show its surface.
   void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const gl::Buffer& direct_irradiance,
-           const gl::Buffer& indirect_irradiance, gl::PassTimer& timer);
+           const gl::Buffer& indirect_irradiance, bool seeps, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
@@ -25,8 +27,11 @@ class VolumeGather {
 
  private:
   gl::Texture direct_, indirect_;
+  void sum(const gl::Buffer& irradiance) const;
+
   gl::Framebuffer framebuffer_;
-  gl::Program program_;
+  gl::Buffer sum_, partials_;  // over all sides: what is dim is judged by their mean
+  gl::Program program_, sum_sides_, sum_partials_;
 };
 
 }  // namespace volgi::screen

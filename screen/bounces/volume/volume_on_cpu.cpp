@@ -5,6 +5,7 @@
 #include "core/gl/readback.h"
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/light_in/side_gather_cpu.h"
+#include "propagation/light_in/side_sky_cpu.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"
@@ -123,7 +124,7 @@ class SidesOnCpu : public FrameVolume {
       upload_irradiance(volume_.irradiance().direct, direct_);
       upload_irradiance(volume_.irradiance().indirect, indirect_);
     }
-    gather_.run(gbuffer, camera, voxels_, direct_, indirect_, timer);
+    gather_.run(gbuffer, camera, voxels_, direct_, indirect_, false, timer);
   }
   bool follow_scene() override {
     if (!follow(scene_, options_, volume_)) return false;
@@ -146,6 +147,7 @@ class SidesOnCpu : public FrameVolume {
     if (after_first_bounce()) {
       embree_.reset();
       embree_ = std::make_unique<EmbreeScene>(scene_);
+      sky_.scene_moved();
     } else {
       direct_light_.emplace(scene_);
     }
@@ -154,7 +156,11 @@ class SidesOnCpu : public FrameVolume {
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
         lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->near_zone);
-    return flux_after_first_bounce(voxels, *embree_, lights, options_.bounces.has_value());
+    const bool apart = options_.bounces.has_value();
+    SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart);
+    if (const SkyMaps* sky = first_bounce->sky)
+      add_sky(voxels, sky_.irradiance(voxels, *embree_, sky->parts(), sky->version()), apart, flux);
+    return flux;
   }
   static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
     const size_t bytes = values.size() * sizeof(glm::vec4);
@@ -167,6 +173,7 @@ class SidesOnCpu : public FrameVolume {
   VolumeCpu volume_;
   std::optional<DirectLightCpu> direct_light_;  // of Source::lights
   std::unique_ptr<EmbreeScene> embree_;         // of Source::first_bounce
+  SideSkyCpu sky_;
   LightsOnHost lights_;
   VoxelGridGl voxels_;
   gl::Buffer direct_, indirect_;

@@ -9,6 +9,7 @@
 #include "screen/bounces/volume/inject_reflective_shadow_map.h"
 #include "screen/bounces/volume/radiance_gather.h"
 #include "screen/bounces/volume/volume_gather.h"
+#include "screen/sources/sky/side_sky_gl.h"
 #include "voxel/cell_volumes_gl.h"
 #include "voxel/emitter_pieces.h"
 #include "voxel/sliced_voxelization.h"
@@ -49,6 +50,9 @@ class LitVoxels {
     flux_.begin(voxels());
     if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.clusters.shadow);
     side_gather_->run(voxels(), first_bounce, flux_, timer);
+    if (first_bounce.sky == nullptr) return;
+    if (!side_sky_) side_sky_ = std::make_unique<SideSkyGl>();
+    side_sky_->run(voxels(), *first_bounce.sky, flux_, timer);
   }
   /// @return false where the scene's bounds make another grid.
   bool follow_scene() {
@@ -97,6 +101,7 @@ class LitVoxels {
   InjectReflectiveShadowMap inject_;
   std::vector<FluxSample> emitters_;
   std::unique_ptr<SideGatherGl> side_gather_;
+  std::unique_ptr<SideSkyGl> side_sky_;
 };
 
 /// Schemes that carry light from sides to sides.
@@ -117,9 +122,11 @@ class SidesOnGpu : public FrameVolume {
     } else {
       lit_.run(buffers, maps, true, timer);
     }
-    bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits(), rules_, timer);
+    const bool sky_apart = first_bounce != nullptr && first_bounce->sky != nullptr;
+    bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits() || sky_apart, rules_, timer,
+                                  streaming_sky(scene_, options_));
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
-    gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), timer);
+    gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), sky_apart, timer);
   }
   bool follow_scene() override {
     rules_ = bounce_rules(options_, largest_albedo(scene_));

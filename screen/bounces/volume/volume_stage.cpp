@@ -8,6 +8,7 @@
 #include "screen/frame/plan.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
+#include "screen/sources/sky/sky_stage.h"
 
 namespace volgi::screen {
 
@@ -81,8 +82,11 @@ StageRole role_alone(const FrameOptions& options) {
   // The papers' volumes do not know which of their light is direct.
   const bool mixes = !carries_sides(o.scheme.scheme);
   if (mixes && !asked_paths(options.light, options.bounces).meets(INDIRECT_PATHS))
-    return {.active = false, .lacks = {emission_direct}};
-  return {.adds = {{LightPaths::all() - LightPaths{emission_seen, punctual_direct}}}};
+    return {.active = false, .lacks = LightPaths{emission_direct} | (SKY_PATHS - LightPaths{sky_seen})};
+  const LightPaths all = LightPaths::all() - BASE_PATHS;
+  // Only directions know what streams in at the rim.
+  if (o.scheme.scheme == Scheme::ordinates) return {.adds = {{all}}};
+  return {.adds = {{all - SKY_PATHS}}, .lacks = SKY_PATHS - LightPaths{sky_seen}};
 }
 
 StageRole role_after_first_bounce(const FrameOptions& options) {
@@ -92,8 +96,13 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
                 "a first bounce on the screen, as --gi hybrid has it, needs a scheme that carries "
                 "orders: --scheme ordinates or conservative");
   bounce_rules(o, 0.5f);
-  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
-              .adds = {{{punctual_higher, emission_first, emission_higher}}}};
+  LightPaths paths{punctual_higher, emission_first, emission_higher, sky_higher};
+  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
+  if (!sky_goes_by_lights(options)) {
+    r.uses = {product<SkyMaps>()};
+    paths = paths | LightPaths{sky_first};
+  }
+  r.adds = {{paths}};
   if (lights_are_subdivided(options)) r.needs.push_back(product<VirtualLightSubdivision>());
   return r;
 }
@@ -126,7 +135,8 @@ class VolumeStage : public Stage {
         size_(context.options.size),
         options_(volume_options(context.options)),
         on_gpu_(runs_on_gpu(context.options.backend)),
-        after_first_bounce_(source == VolumeOptions::Source::first_bounce) {
+        after_first_bounce_(source == VolumeOptions::Source::first_bounce),
+        takes_sky_(after_first_bounce_ && !sky_goes_by_lights(context.options)) {
     options_.source = source;
     if (lights_are_subdivided(context.options)) near_zone_ = context.options.of<ResampleOptions>().near_zone;
     make();
@@ -140,17 +150,24 @@ class VolumeStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     if (after_first_bounce_) {
       const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>(),
-                              frame.find<VirtualLightSubdivision>(), near_zone_};
+                              frame.find<VirtualLightSubdivision>(), near_zone_,
+                              takes_sky_ ? frame.find<SkyMaps>() : nullptr};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
-      // What reaches surfaces from emission has been reflected before.
-      frame.layers.push_back({&volume_->direct(), {emission_first}});
-      frame.layers.push_back({&volume_->indirect(), {punctual_higher, emission_higher}});
+      // What reaches surfaces from emission, or from sky that sides have received, has been reflected before.
+      const LightPaths first_paths = takes_sky_ ? LightPaths{emission_first, sky_first} : LightPaths{emission_first};
+      frame.layers.push_back({&volume_->direct(), first_paths});
+      frame.layers.push_back({&volume_->indirect(), {punctual_higher, emission_higher, sky_higher}});
       return;
     }
     volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, nullptr, timer);
-    const LightPaths reflected{punctual_first, emission_first, punctual_higher, emission_higher};
+    LightPaths reflected{punctual_first, emission_first, punctual_higher, emission_higher};
+    LightPaths arrival{emission_direct};
+    if (options_.scheme.scheme == Scheme::ordinates) {
+      reflected = reflected | LightPaths{sky_first, sky_higher};
+      arrival = arrival | LightPaths{sky_direct};
+    }
     if (carries_sides(options_.scheme.scheme)) {
-      frame.layers.push_back({&volume_->direct(), {emission_direct}});
+      frame.layers.push_back({&volume_->direct(), arrival});
       frame.layers.push_back({&volume_->indirect(), reflected});
     } else {
       frame.layers.push_back({&volume_->indirect(), reflected | LightPaths{emission_direct}});
@@ -189,7 +206,7 @@ class VolumeStage : public Stage {
   const Scene& scene_;
   glm::ivec2 size_;
   VolumeOptions options_;
-  bool on_gpu_, after_first_bounce_;
+  bool on_gpu_, after_first_bounce_, takes_sky_;
   float near_zone_ = 0.0f;
   std::unique_ptr<FrameVolume> volume_;
 };

@@ -6,7 +6,6 @@
 
 #include "core/error.h"
 #include "shaders/screen/base/slots.shared.h"
-#include "shaders/screen/gather/interleaved/exact_pixels.shared.h"
 #include "shaders/screen/gather/interleaved/slots.shared.h"
 #include "shaders/screen/visibility/area_maps/slots.shared.h"
 #include "shaders/shared/disk_to_point.shared.h"
@@ -21,17 +20,6 @@ constexpr GLsizeiptr kBlockBytes = VIRTUAL_LIGHTS_PER_BLOCK * kLightBytes;
 constexpr int kAlign = 16;  // lights: 768 bytes, a multiple of every offset alignment that GL allows
 
 gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, size.x, size.y); }
-
-/// Place of a subset in the block of n x n pixels: subsets that follow on one another lie far apart, as the numbers of
-/// a matrix for ordered dithering do.
-glm::ivec2 place_in_block(int subset, int n) {
-  glm::ivec2 place(0);
-  for (int step = n / 2; step >= 1; step /= 2, subset /= 4) {
-    place.x += ((subset ^ (subset >> 1)) & 1) * step;
-    place.y += (subset & 1) * step;
-  }
-  return place;
-}
 
 void wait_for_pictures() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT); }
 
@@ -58,16 +46,10 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
   if (options_.interleave == 1) return;
   direct_irradiance_ = picture(size);
   indirect_irradiance_ = picture(size);
-  half_blurred_ = picture(size);
-  error_estimate_ = gl::Texture::make_2d(GL_R32F, size.x, size.y);
-  bins_ = gl::Buffer((1 + ERROR_BINS) * sizeof(GLuint));
-  list_.reserve(size_t(size.x) * size_t(size.y));
+  blur_.emplace(size, options_.interleave, options_.blur);
+  worst_.emplace(size);
   defines.emplace_back("LISTED");
   gather_listed_ = gl::Program::compute("screen/gather/interleaved/area_light_gather.comp.glsl", defines);
-  blur_ = gl::Program::compute("screen/gather/interleaved/geometry_blur.comp.glsl");
-  count_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_count.comp.glsl");
-  threshold_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_threshold.comp.glsl");
-  list_program_ = gl::Program::compute("screen/gather/interleaved/exact_pixels_list.comp.glsl");
 }
 
 void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
@@ -94,12 +76,12 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
   if (options_.interleave == 1) return;
   {
     const auto scope = timer.scope(blur_name);
-    blur(indirect_irradiance_, indirect_, false, scene_diagonal_m);
-    if (with_direct_) blur(direct_irradiance_, direct_, true, scene_diagonal_m);
+    blur_->run(indirect_irradiance_, indirect_, GeometryBlur::Estimate::anew, scene_diagonal_m);
+    if (with_direct_) blur_->run(direct_irradiance_, direct_, GeometryBlur::Estimate::adds, scene_diagonal_m);
   }
   if (options_.exact_rows > 0.0f) {
     const auto scope = timer.scope(exact_name);
-    list_worst_pixels();
+    worst_->find(blur_->error_estimate(), options_.exact_rows);
     set_up(gather_listed_);
     gather_listed();
   }
@@ -158,54 +140,17 @@ void AreaLightGather::gather_interleaved() {
 void AreaLightGather::gather_listed() {
   indirect_.bind_image(INDIRECT_IMAGE, GL_READ_WRITE);
   direct_.bind_image(DIRECT_IMAGE, GL_READ_WRITE);
-  list_.bind(PIXEL_LIST_SLOT);
+  worst_->list().bind(PIXEL_LIST_SLOT);
   gather_listed_.set("interleave", 1);
   gather_listed_.use();
-  gather(gather_listed_, {0, light_count_}, [this] { list_.dispatch(); });
+  gather(gather_listed_, {0, light_count_}, [this] { worst_->list().dispatch(); });
   wait_for_pictures();
 }
 
-void AreaLightGather::blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m) {
-  error_estimate_.bind_image(BLUR_ERROR_IMAGE, GL_READ_WRITE);
-  blur_.set("interleave", options_.interleave);
-  blur_.set("max_distance_m", options_.blur_distance * scene_diagonal_m);
-  blur_.set("min_cosine", options_.blur_cosine);
-  blur_.set("off_plane", options_.blur_off_plane);
-  blur_.set("adds", adds ? 1 : 0);
-  blur_.use();
-  const auto along = [&](glm::ivec2 axis, const gl::Texture& source, const gl::Texture& target, bool ends) {
-    source.bind(BLUR_SOURCE_UNIT);
-    target.bind_image(BLURRED_IMAGE, GL_WRITE_ONLY);
-    blur_.set("axis", axis);
-    blur_.set("ends", ends ? 1 : 0);
-    gl::dispatch({size_.x, size_.y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
-    wait_for_pictures();
-  };
-  along({1, 0}, from, half_blurred_, false);
-  along({0, 1}, half_blurred_, to, true);
-}
-
-void AreaLightGather::list_worst_pixels() {
-  list_.clear();
-  bins_.clear();
-  error_estimate_.bind_image(ERROR_ESTIMATE_IMAGE, GL_READ_ONLY);
-  list_.bind(PIXEL_LIST_SLOT);
-  bins_.bind_storage(ERROR_BINS_SLOT);
-  count_.use();
-  gl::dispatch({size_.x, size_.y, 1}, {ERROR_TILE, ERROR_TILE, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  threshold_.set("max_pixels", GLuint(std::min(options_.exact_rows, float(size_.y)) * float(size_.x)));
-  threshold_.use();
-  gl::dispatch({1, 1, 1}, {1, 1, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  list_program_.use();
-  gl::dispatch({size_.x, size_.y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-}
-
 size_t AreaLightGather::bytes() const {
-  const size_t texel_bytes = options_.interleave > 1 ? 5 * 16 + 4 : 2 * 16;
-  return texel_bytes * size_t(size_.x) * size_t(size_.y) + arranged_.bytes() + bins_.bytes() + list_.bytes();
+  const size_t texel_bytes = options_.interleave > 1 ? 4 * 16 : 2 * 16;
+  return texel_bytes * size_t(size_.x) * size_t(size_.y) + arranged_.bytes() + (blur_ ? blur_->bytes() : 0) +
+         (worst_ ? worst_->bytes() : 0);
 }
 
 }  // namespace volgi::screen

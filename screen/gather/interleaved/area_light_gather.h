@@ -1,10 +1,13 @@
 #pragma once
+#include <optional>
+
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/virtual_light_list_gl.h"
-#include "screen/base/work_list.h"
+#include "screen/gather/interleaved/geometry_blur.h"
+#include "screen/gather/interleaved/worst_pixels.h"
 #include "screen/visibility/area_maps/area_light_shadow.h"
 #include "screen/visibility/area_maps/virtual_area_lights.h"
 
@@ -19,10 +22,7 @@ struct AreaLightGatherOptions {
   /// again with every light. They lie along edges and shadows, which are lines: their number grows as rows do. 10 and
   /// blocks of 4 x 4 leave 3 % at 192 rows, for 12 to 14 % of the time of every light at every pixel.
   float exact_rows = 10.0f;
-  /// The blur joins pixels no farther apart than this part of the scene's diagonal (alpha of the paper), ...
-  float blur_distance = 0.1f;
-  float blur_cosine = 0.8f;     // ... whose normals have at least this cosine (beta), ...
-  float blur_off_plane = 0.2f;  // ... and which lie on one another's tangent plane, to this sine of the way's angle
+  GeometryBlurOptions blur;
 };
 
 /// Passes "screen/gather/interleaved/arrange_lights", "screen/gather/interleaved/area_light_gather",
@@ -61,20 +61,18 @@ class AreaLightGather {
   void gather_listed();
   template <class Dispatch>
   void gather(const gl::Program& program, Range lights, const Dispatch& dispatch);
-  void blur(const gl::Texture& from, const gl::Texture& to, bool adds, float scene_diagonal_m);
-  void list_worst_pixels();
 
   AreaLightGatherOptions options_;
   glm::ivec2 size_;
   gl::Texture direct_, indirect_;
-  gl::Texture direct_irradiance_, indirect_irradiance_, half_blurred_;
-  gl::Texture error_estimate_;  // R32F: radiance that a pixel may err by
-  gl::Buffer arranged_;         // shared::VirtualLight in the order of clusters; source is the area light
-  gl::Buffer bins_;             // uint: threshold, then pixels in each bin of the error estimate (exact_pixels.glsl)
-  WorkList list_;               // pixels: coarse_pixels.glsl
+  gl::Texture direct_irradiance_, indirect_irradiance_;
+  gl::Buffer arranged_;  // shared::VirtualLight in the order of clusters; source is the area light
   int light_count_ = 0;
   bool with_direct_ = false;
-  gl::Program arrange_, gather_, gather_listed_, blur_, count_, threshold_, list_program_;
+  // None where every pixel takes every light.
+  std::optional<GeometryBlur> blur_;
+  std::optional<WorstPixels> worst_;
+  gl::Program arrange_, gather_, gather_listed_;
 };
 
 }  // namespace volgi::screen

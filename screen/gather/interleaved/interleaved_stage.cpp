@@ -5,6 +5,7 @@
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/gather/interleaved/near_lights.h"
 #include "screen/lights/resample/resample_stage.h"
+#include "screen/sources/sky/sky_stage.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -22,23 +23,28 @@ constexpr Parameter PARAMETERS[] = {
         [](Options& o) -> auto& { return o.exact_rows; }),
 };
 
-constexpr LightPaths PATHS{LightPath::emission_direct, LightPath::punctual_first};
+LightPaths reflected_paths(const FrameOptions& options) {
+  const LightPaths punctual{LightPath::punctual_first};
+  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
+}
 
 StageRole role(const FrameOptions& options) {
+  const LightPaths paths = reflected_paths(options) | LightPaths{LightPath::emission_direct};
   AreaLightGather::check(options.of<Options>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
   if (lights_are_subdivided(options)) {
     r.needs.push_back(product<VirtualLightSubdivision>());
-    r.adds = {{PATHS, LightShare::near}, {PATHS, LightShare::far}};
+    r.adds = {{paths, LightShare::near}, {paths, LightShare::far}};
   } else {
-    r.adds = {{PATHS}};
+    r.adds = {{paths}};
   }
   return r;
 }
 
 class InterleavedStage : public Stage {
  public:
-  explicit InterleavedStage(const StageContext& context) : options_(options_for(context)), size_(context.options.size) {
+  explicit InterleavedStage(const StageContext& context)
+      : options_(options_for(context)), reflected_(reflected_paths(context.options)), size_(context.options.size) {
     if (options_.near_zone > 0.0f) near_.emplace(size_, options_.near_zone);
   }
 
@@ -63,14 +69,14 @@ class InterleavedStage : public Stage {
     return o;
   }
   template <class Pass>
-  static void add_layers(const Pass& pass, LightShare share, const VirtualLightListGl& lights, FrameData& frame) {
+  void add_layers(const Pass& pass, LightShare share, const VirtualLightListGl& lights, FrameData& frame) const {
     // Without lights on emissive surfaces nobody has written it in this frame.
     if (lights.emitted > 0) frame.layers.push_back({&pass.direct(), {LightPath::emission_direct}, share});
-    if (frame.wanted.contains(LightPath::punctual_first))
-      frame.layers.push_back({&pass.indirect(), {LightPath::punctual_first}, share});
+    if (frame.wanted.meets(reflected_)) frame.layers.push_back({&pass.indirect(), reflected_, share});
   }
 
   Options options_;
+  LightPaths reflected_;
   glm::ivec2 size_;
   std::optional<AreaLightGather> gather_;  // made with the first frame, whose shadow method its shader has
   std::optional<NearLights> near_;

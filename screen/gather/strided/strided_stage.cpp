@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "screen/gather/strided/virtual_light_gather.h"
+#include "screen/sources/sky/sky_stage.h"
 
 namespace volgi::screen {
 
@@ -25,24 +26,30 @@ constexpr Parameter PARAMETERS[] = {
         [](Options& o) -> auto& { return o.distance; }),
 };
 
-StageRole role(const FrameOptions& /*options*/) {
+LightPaths reflected_paths(const FrameOptions& options) {
+  const LightPaths punctual{LightPath::punctual_first};
+  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
+}
+
+StageRole role(const FrameOptions& options) {
   return {.needs = {product<VirtualLightListGl>()},
           .uses = {product<NegativeLights>()},
-          .adds = {{{LightPath::emission_direct, LightPath::punctual_first}}}};
+          .adds = {{reflected_paths(options) | LightPaths{LightPath::emission_direct}}}};
 }
 
 class StridedStage : public Stage {
  public:
-  explicit StridedStage(const StageContext& context) : gather_(context.options.size, context.options.of<Options>()) {}
+  explicit StridedStage(const StageContext& context)
+      : gather_(context.options.size, context.options.of<Options>()), reflected_(reflected_paths(context.options)) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& lights = frame.get<VirtualLightListGl>();
-    const bool reflected = frame.wanted.contains(LightPath::punctual_first);
+    const bool reflected = frame.wanted.meets(reflected_);
     gather_.run(frame.gbuffer, lights, frame.find<NegativeLights>(),
                 reflected ? VirtualLightGather::Part::all : VirtualLightGather::Part::emitted, frame.scene_diagonal_m,
                 timer);
     if (lights.emitted > 0) frame.layers.push_back({&gather_.direct(), {LightPath::emission_direct}});
-    if (reflected) frame.layers.push_back({&gather_.indirect(), {LightPath::punctual_first}});
+    if (reflected) frame.layers.push_back({&gather_.indirect(), reflected_});
   }
   void report(FrameReport& report) const override {
     const double share = double(gather_.coarse_share());
@@ -52,6 +59,7 @@ class StridedStage : public Stage {
 
  private:
   VirtualLightGather gather_;
+  LightPaths reflected_;
 };
 
 }  // namespace

@@ -27,6 +27,12 @@ void VirtualLightSubdivision::run(const ReflectiveShadowMap& maps, const Virtual
   for (int light = 0; light < int(lights.of_light.size()); ++light) {
     const int count = lights.of_light[size_t(light)];
     if (count == 0) continue;
+    if (light >= maps.light_count()) {  // of the sky
+      bind();
+      run_source(-1, first, count, false, 0.0, chosen.candidates_per_light());
+      first += count;
+      continue;
+    }
     maps.bind(light);
     bind();
     const double measure = candidates.set_sampling(program_, maps, light);

@@ -2,6 +2,7 @@
 
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/virtual_lights.h"
+#include "screen/sources/sky/sky_stage.h"
 
 namespace volgi::screen {
 
@@ -23,16 +24,19 @@ constexpr Parameter PARAMETERS[] = {
         [](Options& o) -> auto& { return o.sampling; }),
 };
 
-StageRole role(const FrameOptions& /*options*/) {
-  return {.makes = {product<VirtualLights>(), product<VirtualLightListGl>()}};
+StageRole role(const FrameOptions& options) {
+  std::vector<Product> uses;
+  if (sky_goes_by_lights(options)) uses.push_back(product<SkyMaps>());
+  return {.uses = std::move(uses), .makes = {product<VirtualLights>(), product<VirtualLightListGl>()}};
 }
 
 class RsmLights : public Stage {
  public:
-  explicit RsmLights(const StageContext& context) : lights_(context.scene, options_for(context)) {}
+  explicit RsmLights(const StageContext& context)
+      : lights_(context.scene, options_for(context)), with_sky_(sky_goes_by_lights(context.options)) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
-    lights_.run(frame.shadow_maps, timer);
+    lights_.run(frame.shadow_maps, with_sky_ ? frame.find<SkyMaps>() : nullptr, timer);
     frame.lend(lights_);
     frame.lend(lights_.list());
   }
@@ -52,6 +56,7 @@ class RsmLights : public Stage {
     return o;
   }
   VirtualLights lights_;
+  bool with_sky_;
 };
 
 }  // namespace

@@ -13,12 +13,15 @@
 #include "core/hilbert.h"
 #include "core/light_cone.h"
 #include "shaders/screen/lights/rsm/slots.shared.h"
+#include "shaders/screen/sources/sky/slots.shared.h"
 #include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 namespace {
 
 using Sampling = VirtualLightOptions::Sampling;
+
+constexpr int kSkyPartsOfPoint = 32;  // that a point on a surface looks at: with 16 of them for a light, nearly all
 
 const VirtualLightOptions& checked(const VirtualLightOptions& options) {
   const int asked = options.per_light.value_or(options.count);
@@ -80,31 +83,37 @@ VirtualLights::VirtualLights(const Scene& scene, const VirtualLightOptions& opti
 
 void VirtualLights::scene_moved() {
   emitters_ = EmitterPoints(scene_);
-  emitters_moved_ = true;
+  moved_ = true;
 }
 
-LightShares VirtualLights::shares() const {
+LightShares VirtualLights::shares(bool with_sky) const {
   LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
                                           : share_by_power(scene_, emitters_.flux(), options_.count);
+  if (!with_sky) shares.of_sky = 0;
   // At most kMaxCount each, so that the sum cannot overflow for any number of lights that fits in memory.
-  const auto all = std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_emitters));
+  const auto all =
+      std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_sky) + shares.of_emitters);
   if (all > VirtualLightOptions::kMaxCount) {
     throw Error(ExitCode::over_limit, std::to_string(*options_.per_light) + " virtual lights for each source make " +
                                           std::to_string(all) + ", more than " +
                                           std::to_string(VirtualLightOptions::kMaxCount) + "; ask for fewer");
   }
   for (int& of_light : shares.of_light) of_light *= options_.candidates;
+  shares.of_sky *= options_.candidates;
   shares.of_emitters *= options_.candidates;
   return shares;
 }
 
-/// Makes room, and places what does not depend on the maps: points on emissive surfaces, zeros behind the last.
-void VirtualLights::lay_out(const LightShares& shares) {
-  const bool moved = std::exchange(emitters_moved_, false) && shares.of_emitters > 0;
-  if (!moved && list_.buffer.id() != 0 && shares.of_light == list_.of_light && shares.of_emitters == list_.emitted)
-    return;
-  list_.of_light = shares.of_light;
-  list_.reflected = std::accumulate(shares.of_light.begin(), shares.of_light.end(), 0);
+/// Makes room, and places what does not depend on the maps: points on surfaces, zeros behind the last. @return whether
+/// it had to.
+bool VirtualLights::lay_out(const LightShares& shares) {
+  const bool moved = std::exchange(moved_, false) && shares.of_emitters + shares.of_sky > 0;
+  std::vector<int> of_light = shares.of_light;
+  if (shares.of_sky > 0) of_light.push_back(shares.of_sky);
+  if (!moved && list_.buffer.id() != 0 && of_light == list_.of_light && shares.of_emitters == list_.emitted)
+    return false;
+  list_.of_light = std::move(of_light);
+  list_.reflected = std::accumulate(list_.of_light.begin(), list_.of_light.end(), 0);
   list_.emitted = shares.of_emitters;
   std::vector<shared::VirtualLight> lights(padded_count(list_));
   const std::vector<EmitterPoint> points = emitters_.points(list_.emitted);
@@ -115,6 +124,29 @@ void VirtualLights::lay_out(const LightShares& shares) {
   } else {
     list_.buffer = gl::Buffer(lights);
   }
+  surfaces_ = surface_points(scene_, shares.of_sky);
+  return true;
+}
+
+/// What the points on surfaces reflect of the sky, unless nothing has changed.
+void VirtualLights::light_by_sky(const SkyMaps& sky, bool laid_out, int first, int count) {
+  if (!laid_out && sky.version() == sky_version_) return;
+  sky_version_ = sky.version();
+  std::vector<shared::VirtualLight> points(static_cast<size_t>(count));
+  for (size_t i = 0; i < std::min(points.size(), surfaces_.size()); ++i) {
+    const SurfaceSample& s = surfaces_[i];
+    points[i] = {s.position, s.area_m2, s.normal, VIRTUAL_LIGHT_REFLECTED, s.albedo, -1};
+  }
+  list_.buffer.upload(points.data(), points.size() * sizeof(shared::VirtualLight),
+                      size_t(first) * sizeof(shared::VirtualLight));
+  if (sky_program_.id() == 0) sky_program_ = gl::Program::compute("screen/sources/sky/sky_points.comp.glsl");
+  sky.bind(sky_program_);
+  list_.buffer.bind_storage(SKY_POINTS_SLOT);
+  sky_program_.set("first", first);
+  sky_program_.set("count", count);
+  sky_program_.set("subsets", std::max(sky.part_count() / kSkyPartsOfPoint, 1));
+  sky_program_.use();
+  gl::dispatch_linear(size_t(count), LINEAR_GROUP);
 }
 
 /// Uploads the samples of all lights, unless they are what they were.
@@ -139,11 +171,11 @@ void VirtualLights::make_samples(const LightShares& shares) {
   keys_ = std::move(keys);
 }
 
-void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
+void VirtualLights::run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer) {
   assert(maps.light_count() == int(scene_.lights.size()));
   const auto scope = timer.scope(name);
-  const LightShares of = shares();
-  lay_out(of);
+  const LightShares of = shares(sky != nullptr);
+  const bool laid_out = lay_out(of);
   make_samples(of);
   int first = 0;
   for (int light = 0; light < maps.light_count(); ++light) {
@@ -165,6 +197,7 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, gl::PassTimer& timer) {
     gl::dispatch_linear(size_t(count), LINEAR_GROUP);
     first += count;
   }
+  if (of.of_sky > 0) light_by_sky(*sky, laid_out, first, of.of_sky);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

@@ -8,9 +8,11 @@
 #include "core/gl/program.h"
 #include "core/light_shares.h"
 #include "core/scene.h"
+#include "core/surface_points.h"
 #include "core/virtual_light_list.h"
 #include "screen/base/reflective_shadow_map.h"
 #include "screen/base/virtual_light_list_gl.h"
+#include "screen/sources/sky/sky_maps.h"
 
 namespace volgi::screen {
 
@@ -28,8 +30,9 @@ struct VirtualLightOptions {
 };
 
 /// Pass "screen/lights/rsm/virtual_lights": the list of virtual point lights, made on the GPU from the reflective
-/// shadow maps of all lights and from points on emissive surfaces. Reflected lights come first, in the order of the
-/// scene's lights.
+/// shadow maps of all lights, from points on all surfaces that the sky lights (surface_points.h; each looks at a few
+/// parts of the sky), and from points on emissive surfaces. Reflected lights come first, in the order of the scene's
+/// lights, the sky's behind them.
 class VirtualLights {
  public:
   static constexpr const char* name = "screen/lights/rsm/virtual_lights";
@@ -38,9 +41,9 @@ class VirtualLights {
   /// @throws Error(usage) when the options ask for less than one light, or more than kMaxCount.
   VirtualLights(const Scene& scene, const VirtualLightOptions& options);
 
-  /// @param maps  of the lights of `scene` as they are now.
+  /// @param maps  of the lights of `scene` as they are now. @param sky  of its sky; null: that is not looked at.
   /// @throws Error(over_limit) when per_light times the number of sources exceeds kMaxCount.
-  void run(const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+  void run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer);
   /// The scene's geometry is another than before: its emissive surfaces are looked at again.
   void scene_moved();
 
@@ -69,8 +72,9 @@ class VirtualLights {
     int count;
     bool operator==(const SampleKey&) const = default;
   };
-  LightShares shares() const;
-  void lay_out(const LightShares& shares);
+  LightShares shares(bool with_sky) const;
+  bool lay_out(const LightShares& shares);
+  void light_by_sky(const SkyMaps& sky, bool laid_out, int first, int count);
   void make_samples(const LightShares& shares);
   void sample_evenly(const ReflectiveShadowMap& maps, int light) const;
   void sample_by_flux(const ReflectiveShadowMap& maps, int light);
@@ -79,11 +83,13 @@ class VirtualLights {
   VirtualLightOptions options_;
   EmitterPoints emitters_;
   VirtualLightListGl list_;
-  bool emitters_moved_ = false;
-  gl::Buffer samples_;  // vec4 each: of all lights, in their order
-  gl::Buffer pyramid_;  // of one light at a time: flux_importance.glsl
+  bool moved_ = false;
+  int sky_version_ = -1;
+  std::vector<SurfaceSample> surfaces_;  // that the sky may light
+  gl::Buffer samples_;                   // vec4 each: of all lights, in their order
+  gl::Buffer pyramid_;                   // of one light at a time: flux_importance.glsl
   std::vector<SampleKey> keys_;
-  gl::Program lights_program_, texels_program_, reduce_program_;
+  gl::Program lights_program_, texels_program_, reduce_program_, sky_program_;
 };
 
 }  // namespace volgi::screen

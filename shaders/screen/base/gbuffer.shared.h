@@ -5,6 +5,9 @@
 #define GBUFFER_POSITION_UNIT 0
 #define GBUFFER_NORMALS_UNIT 1
 #define GBUFFER_ALBEDO_UNIT 2
-#define GBUFFER_UNITS 3  // the first one that is free
+// Of surfaces that shine, for direct light alone: where no unit but these is taken.
+#define GBUFFER_DIFFUSE_UNIT 3
+#define GBUFFER_MIRROR_UNIT 4
+#define GBUFFER_UNITS 3  // the first one that is free elsewhere
 
 #endif

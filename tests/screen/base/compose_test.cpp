@@ -27,7 +27,7 @@ TEST_F(Compose, AddsLayers) {
   }
   screen::Compose compose(size);
   const auto sum = [&](std::vector<const gl::Texture*> shown) {
-    compose.run(gbuffer, shown, timer);
+    compose.run(gbuffer, shown, nullptr, timer);
     return screen::image_from_texture(compose.radiance());
   };
   EXPECT_EQ(sum({&layers[0], &layers[1]}).at(8, 12).r, 3.0f);

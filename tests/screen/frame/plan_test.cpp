@@ -100,7 +100,7 @@ TEST(Plan, LeavesOutWhatNobodyAsksFor) {
   o.light = LightPart::full;
   EXPECT_EQ(names(plan_picture(recipe, o, {})), Names{}) << "an empty scene";
   EXPECT_EQ(plan_picture(recipe, o, LightPaths::all()).missing,
-            (LightPaths{emission_direct, emission_first, emission_higher}));
+            (LightPaths{emission_direct, emission_first, emission_higher, sky_direct, sky_first, sky_higher}));
 }
 
 TEST(Plan, EveryRecipeAddsUpWhateverIsAskedFor) {
@@ -142,7 +142,7 @@ TEST(Plan, LayersAreHeldToTheRole) {
 TEST(LightPath, AskedForByLightAndBounces) {
   EXPECT_EQ(asked_paths(LightPart::full, std::nullopt), LightPaths::all());
   EXPECT_EQ(asked_paths(LightPart::full, 0), DIRECT_PATHS);
-  EXPECT_EQ(asked_paths(LightPart::indirect, 1), (LightPaths{punctual_first, emission_first}));
+  EXPECT_EQ(asked_paths(LightPart::indirect, 1), (LightPaths{punctual_first, emission_first, sky_first}));
   EXPECT_EQ(asked_paths(LightPart::indirect, 0), LightPaths());
   EXPECT_EQ(in_words(LightPaths{punctual_first, emission_seen}),
             "emissive surfaces seen by the camera and the first reflection of punctual light");

@@ -7,10 +7,15 @@
 #include "propagation/slots.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
+#include "voxel/side_count.glsl"
 #include "voxel/sides.glsl"
 
 layout(std430, binding = DIRECT_IRRADIANCE_SLOT) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
 layout(std430, binding = INDIRECT_IRRADIANCE_SLOT) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
+
+layout(std430, binding = DIRECT_SUM_SLOT) readonly buffer DirectSum { vec4 direct_sum; };
+
+uniform float seeps;  // share of the mean over sides that counts as dark
 
 uniform vec4 viewer;  // xyz position, w 1; or towards the viewer, w 0 (orthographic)
 
@@ -70,7 +75,11 @@ Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_pla
   return g;
 }
 
-bool is_lit(Gathered g) { return g.weight > 0.0 && any(greaterThan(g.direct + g.indirect, vec3(0.0))); }
+// What may have seeped into what is sealed is no light.
+bool is_lit(Gathered g) {
+  vec3 seeped = seeps > 0.0 ? direct_sum.rgb * (seeps / float(max(side_count, 1u))) : vec3(0.0);
+  return g.weight > 0.0 && any(greaterThan(g.direct + g.indirect, seeped * g.weight));
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);

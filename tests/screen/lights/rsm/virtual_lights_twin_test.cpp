@@ -25,7 +25,7 @@ Agreement agreement(const gl::Context& context, const Scene& scene) {
   screen::ReflectiveShadowMap maps;
   maps.run(buffers, scene, timer);
   screen::VirtualLights pass(scene, {kCount, {}, Sampling::halton});
-  pass.run(maps, timer);
+  pass.run(maps, nullptr, timer);
   const std::vector<VirtualLight> of_maps = pass.download().lights;
   const VirtualLightsCpu of_rays = virtual_lights_cpu(EmbreeScene(scene), EmitterPoints(scene), kCount);
   EXPECT_EQ(of_rays.reflected, pass.reflected());

@@ -377,7 +377,7 @@ TEST_F(VirtualAreaLights, StayOutsideOfASceneAsTheLightCrossesIt) {
     scene.lights[0].position = {-1.6f + 3.0f * s, 2.6f, 1.4f};
     scene.lights[0].direction = glm::normalize(glm::vec3(0.1f, -1.0f, -0.5f));
     maps.run(buffers, scene, timer);
-    lights.run(maps, timer);
+    lights.run(maps, nullptr, timer);
     pass.run(lights, glm::distance(scene.bounds_min, scene.bounds_max), timer);
     const auto area_lights = pass.download();
     drift.add(area_lights, lights.download().lights);

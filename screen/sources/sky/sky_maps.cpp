@@ -1,0 +1,87 @@
+#include "screen/sources/sky/sky_maps.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/gl/limits.h"
+#include "core/gl/raster_state.h"
+#include "core/light_layers.h"
+#include "shaders/screen/sources/sky/slots.shared.h"
+
+namespace volgi::screen {
+
+SkyMaps::SkyMaps(const SkyOptions& options)
+    : resolution_(options.map_texels),
+      parts_asked_(options.parts),
+      program_(gl::Program::raster("screen/base/reflective_shadow_map.vert.glsl",
+                                   "screen/sources/sky/sky_maps.frag.glsl")) {}
+
+void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer) {
+  if (drawn_ == scene.sky) return;
+  const auto scope = timer.scope(name);
+  layers_.clear();
+  parts_ = sky_lights(*scene.sky, parts_asked_);
+  for (const SkyLight& light : parts_) {
+    Light sun;
+    sun.type = Light::Type::directional;
+    sun.direction = light.direction;
+    layers_.push_back(reflective_shadow_layers(sun, resolution_, scene.bounds_min, scene.bounds_max).front());
+  }
+  upload_parts();
+  if (framebuffers_.size() != layers_.size()) {
+    const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
+    depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, part_count());
+    normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, part_count());
+    framebuffers_.clear();
+    for (int layer = 0; layer < part_count(); ++layer) {
+      using Attachment = gl::Framebuffer::Attachment;
+      const std::array colors{Attachment{&normal_, layer}};
+      framebuffers_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
+    }
+  }
+  gl::begin_geometry_pass();
+  for (size_t layer = 0; layer < layers_.size(); ++layer) {
+    framebuffers_[layer].bind();
+    constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
+    glClearNamedFramebufferfv(framebuffers_[layer].id(), GL_COLOR, 0, zero.data());
+    glClearNamedFramebufferfv(framebuffers_[layer].id(), GL_DEPTH, 0, zero.data());
+    program_.set("clip_from_world", layers_[layer].clip_from_world);
+    program_.set("viewer", glm::vec4(-layers_[layer].forward, 0.0f));
+    buffers.draw(program_);
+  }
+  drawn_ = scene.sky;
+  ++version_;
+}
+
+void SkyMaps::upload_parts() {
+  std::vector<shared::SkyPart> parts(SKY_MAX_PARTS);  // a uniform block is bound whole
+  for (size_t k = 0; k < layers_.size(); ++k) {
+    const shared::ReflectiveShadowLayer& l = layers_[k];
+    const float texels = float(resolution_);
+    const auto linear = [&](glm::vec3 axis, float offset) {
+      return glm::vec4(axis, float(double(offset) - glm::dot(glm::dvec3(axis), glm::dvec3(l.origin))));
+    };
+    parts[k].column = linear(l.right * (0.5f * texels / l.extent_x), 0.5f * texels);
+    parts[k].row = linear(l.up * (0.5f * texels / l.extent_y), 0.5f * texels);
+    parts[k].way = linear(l.forward, 0.0f);
+    parts[k].one_column = glm::vec4(l.right * (2.0f * l.extent_x / texels), l.depth_scale_m);
+    const float texel_m = 2.0f * std::max(l.extent_x, l.extent_y) / texels;
+    parts[k].one_row = glm::vec4(l.up * (2.0f * l.extent_y / texels), texel_m / 256.0f + l.depth_scale_m / 1048576.0f);
+    parts[k].irradiance = glm::vec4(parts_[k].irradiance, 0.0f);
+  }
+  gl::put(part_buffer_, parts);
+}
+
+void SkyMaps::bind(const gl::Program& program) const {
+  part_buffer_.bind_uniform(SKY_PARTS_BLOCK);
+  depth_.bind(SKY_DEPTH_UNIT);
+  normal_.bind(SKY_NORMAL_UNIT);
+  program.set("sky_resolution", resolution_);
+  program.set("part_count", part_count());
+}
+
+size_t SkyMaps::bytes() const {
+  return 8 * size_t(resolution_) * size_t(resolution_) * layers_.size() + part_buffer_.bytes();
+}
+
+}  // namespace volgi::screen

@@ -1,0 +1,63 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
+#include "core/gl/program.h"
+#include "core/gl/scene_buffers.h"
+#include "core/scene.h"
+#include "core/sky.h"
+#include "shaders/shared/reflective_shadow_map.shared.h"
+
+namespace volgi::screen {
+
+struct SkyOptions {
+  int parts = 256;
+  /// Who carries the first reflection: the volume, from what its sides receive of every part, or virtual lights on
+  /// surfaces. None: the volume where a recipe has one after a first bounce on the screen (prefer_sky_by_lights()).
+  enum class First { volume, lights };
+  std::optional<First> first;
+  int map_texels = 128;
+  int interleave = 4;       // as AreaLightGatherOptions has it
+  float exact_rows = 6.0f;  // likewise
+};
+
+/// Pass "screen/sources/sky/sky_maps": the sky as lights that are far away (core/sky.h), each with a map of what it
+/// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Drawn anew only where sky
+/// or scene have changed. Cost then: one draw of the scene a part; 8 bytes of GPU memory a texel.
+class SkyMaps {
+ public:
+  static constexpr const char* name = "screen/sources/sky/sky_maps";
+  static constexpr const char* product_name = "maps of the sky";
+  explicit SkyMaps(const SkyOptions& options);
+
+  /// @param scene  has a sky.
+  void run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer);
+  void scene_moved() { drawn_.reset(); }
+  /// For programs with screen/sources/sky/sky_parts.glsl.
+  void bind(const gl::Program& program) const;
+
+  const std::vector<SkyLight>& parts() const { return parts_; }
+  int part_count() const { return int(layers_.size()); }
+  /// Grows whenever the maps change.
+  int version() const { return version_; }
+  size_t bytes() const;
+
+ private:
+  void upload_parts();
+
+  int resolution_;
+  int parts_asked_;
+  int version_ = 0;
+  std::shared_ptr<const Sky> drawn_;
+  std::vector<SkyLight> parts_;
+  std::vector<shared::ReflectiveShadowLayer> layers_;
+  gl::Texture depth_, normal_;
+  std::vector<gl::Framebuffer> framebuffers_;
+  gl::Buffer part_buffer_;
+  gl::Program program_;
+};
+
+}  // namespace volgi::screen

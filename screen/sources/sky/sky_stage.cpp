@@ -1,0 +1,88 @@
+#include "screen/sources/sky/sky_stage.h"
+
+#include <optional>
+
+#include "core/error.h"
+#include "screen/sources/sky/sky_gather.h"
+#include "shaders/screen/sources/sky/slots.shared.h"
+
+namespace volgi::screen {
+
+namespace {
+
+using Options = SkyOptions;
+
+constexpr const char* FIRST[] = {"volume", "lights"};
+
+constexpr Parameter PARAMETERS[] = {
+    choice<Options>(
+        {"sky.first", "", "what carries the first reflection of sky light", "volume in hybrid, lights elsewhere"},
+        FIRST, [](Options& o) -> auto& { return o.first; }),
+    number<Options>(
+        {"sky.parts", "", "lights that stand for the sky, each with a map of its own"}, {16, SKY_MAX_PARTS},
+        [](Options& o) -> auto& { return o.parts; }),
+    number<Options>(
+        {"sky.map", "texels", "on a side of each part's map"}, {16, 2048},
+        [](Options& o) -> auto& { return o.map_texels; }),
+    number<Options>(
+        {"sky.interleave", "pixels", "blocks of n x n share the parts: 1, 2, 4 or 8"}, {1, 8},
+        [](Options& o) -> auto& { return o.interleave; }),
+    number<Options>(
+        {"sky.exact", "rows", "as many pixels as so many rows hold get every part, the worst ones"}, {0, 65536},
+        [](Options& o) -> auto& { return o.exact_rows; }),
+};
+
+StageRole role(const FrameOptions& options) {
+  const int n = options.of<Options>().interleave;
+  if (n != 1 && n != 2 && n != 4 && n != 8)
+    throw Error(ExitCode::usage, "sky.interleave: 1, 2, 4 or 8, not " + std::to_string(n));
+  return {.makes = {product<SkyMaps>()}, .adds = {{{LightPath::sky_direct}}}};
+}
+
+class SkyStage : public Stage {
+ public:
+  explicit SkyStage(const StageContext& context) : maps_(context.options.of<Options>()) {
+    if (context.wanted.contains(LightPath::sky_direct))
+      gather_.emplace(context.options.size, context.options.of<Options>());
+  }
+
+  void run(FrameData& frame, gl::PassTimer& timer) override {
+    if (!frame.scene.sky) return;
+    maps_.run(frame.triangles, frame.scene, timer);
+    frame.lend(maps_);
+    if (!gather_) return;
+    gather_->run(frame.gbuffer, maps_, frame.scene_diagonal_m, timer);
+    frame.layers.push_back({&gather_->radiance(), {LightPath::sky_direct}});
+  }
+  void scene_changed() override { maps_.scene_moved(); }
+  void report(FrameReport& report) const override {
+    report.add("sky_parts", double(maps_.part_count()),
+               maps_.part_count() > 0 ? std::to_string(maps_.part_count()) + " parts of the sky" : std::string());
+    report.memory_bytes += maps_.bytes() + (gather_ ? gather_->bytes() : 0);
+  }
+
+ private:
+  SkyMaps maps_;
+  std::optional<SkyGather> gather_;
+};
+
+}  // namespace
+
+bool sky_goes_by_lights(const FrameOptions& options) {
+  return options.of<Options>().first.value_or(Options::First::volume) == Options::First::lights;
+}
+
+void prefer_sky_by_lights(TypeMap& settings) {
+  auto& first = settings.of<Options>().first;
+  if (!first) first = Options::First::lights;
+}
+
+constinit const StageType SKY{
+    .name = "sources/sky",
+    .slot = Slot::sources,
+    .parameters = PARAMETERS,
+    .role = role,
+    .make = [](const StageContext& context) -> std::unique_ptr<Stage> { return std::make_unique<SkyStage>(context); },
+    .report_nothing = [](FrameReport& report) { report.add("sky_parts", 0.0); }};
+
+}  // namespace volgi::screen

@@ -1,0 +1,22 @@
+#version 450 core
+// What one part of the sky sees: the normal of the surface, its depth goes to the depth buffer.
+#include "shared/material.glsl"
+#include "shared/octahedral.glsl"
+
+uniform vec4 viewer;  // the direction towards the part, and 0
+
+in vec3 position;
+in vec2 uv0;
+in vec2 uv1;
+in vec4 color;
+flat in vec3 geometric_normal;
+flat in uint object_id;
+
+layout(location = 0) out vec2 out_normal;  // geometric, octahedral, on the sky's side
+
+void main() {
+  float alpha = material_base(uv0, uv1, color).a;
+  if (!material_keeps(alpha, uvec3(gl_FragCoord.xy, object_id * 65599u + uint(gl_PrimitiveID)))) discard;
+  bool front = dot(geometric_normal, viewer.xyz) >= 0.0;
+  out_normal = octahedral_encode(front ? geometric_normal : -geometric_normal);
+}
