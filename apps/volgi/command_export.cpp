@@ -6,12 +6,14 @@
 #include <string>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/light_options.h"
 #include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/progress.h"
+#include "core/sky.h"
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/ordinates.h"
 #include "propagation/volume_cpu.h"
@@ -26,6 +28,7 @@ struct ExportCommand {
   std::filesystem::path scene_path, out;
   double time_s = 0.0;
   VolumeCommandOptions volume;
+  LightOptions light;
   std::string stage = "radiance", backend = "auto";
   bool quiet = false;
 
@@ -95,6 +98,7 @@ openvdb::MetaMap file_metadata(const ExportCommand& command, const VolumeOptions
   text("backend", "cpu");
   text("stage", command.stage);
   if (!command.has_radiance()) return metadata;
+  if (streaming_sky(scene, options) != nullptr) text("sky", scene.sky->name());
   text("scheme", scheme_name(options.scheme.scheme));
   if (options.scheme.scheme == Scheme::ordinates)
     number("directions", choose_ordinates(grid.cells, options.scheme).directions);
@@ -110,10 +114,14 @@ openvdb::MetaMap file_metadata(const ExportCommand& command, const VolumeOptions
 int ExportCommand::run() const {
   set_quiet(quiet);
   volume.limit_threads();
-  const VolumeOptions options = volume.volume_options();
+  VolumeOptions options = volume.volume_options();
   if (out.extension() != ".vdb") throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .vdb");
   check_writable(out);
-  const Scene scene = load_scene(scene_path, time_s);
+  Scene scene = load_scene(scene_path, time_s);
+  light.apply(scene);
+  volume.fit_grid(scene, options);
+  if (scene.sky && has_radiance() && streaming_sky(scene, options) == nullptr)
+    warn_once(scene.name + ": only --scheme ordinates carries the sky's light; it is left out");
   VolumeCpu computed(scene, options);
 
   Progress progress("export", has_radiance() ? 5 : 2);
@@ -153,6 +161,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("SCENE", options->scene_path, scene_help)->required()->type_name("FILE");
   command->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb")->required()->type_name("FILE");
   options->volume.add_to(*command);
+  options->light.add_to(*command);
   command
       ->add_option("--stage", options->stage,
                    "voxels: occupancy, albedo, normal, emission; radiance: fluence and spherical harmonics as well")

@@ -40,7 +40,8 @@ struct RenderCommand {
   bool half = false;
   bool quiet = false;
   int frames = 1;
-  std::string animate;  // T0:T1:FPS; empty: one picture
+  std::optional<int> samples;  // none: 1, or 8 without jitter where something is half transparent
+  std::string animate;         // T0:T1:FPS; empty: one picture
   DeviceOptions device;
 
   int run();
@@ -50,14 +51,16 @@ struct RenderCommand {
 
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
-  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer);
+  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer, bool software);
   TimedFrames render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer);
+                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer, bool software);
   bool writes_png() const { return out.extension() == ".png"; }
   void light(Scene& loaded, const Camera& camera) const;
   void read_exposure();
   void choose_exposure(const Image& image, const std::filesystem::path& path);
-  void write_picture(const screen::Frame& picture, const std::filesystem::path& path);
+  int sample_count(const Scene& loaded) const;
+  Image all_samples(screen::Frame& picture, const Scene& loaded, const Camera& camera, bool software) const;
+  void write_picture(const Image& image, const std::filesystem::path& path);
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
                          const gl::Context& context, gl::PassTimer& timer, const TimedFrames& timed) const;
 };
@@ -129,8 +132,30 @@ void warn_of_exposure(const Image& image, float exposure_ev, const std::filesyst
   }
 }
 
-void RenderCommand::write_picture(const screen::Frame& picture, const std::filesystem::path& path) {
-  const Image image = screen::image_from_texture(picture.radiance());
+int RenderCommand::sample_count(const Scene& loaded) const {
+  constexpr int OF_BLEND = 8;
+  const auto blends = [](const Material& m) { return m.alpha_mode == AlphaMode::blend; };
+  return samples.value_or(std::any_of(loaded.materials.begin(), loaded.materials.end(), blends) ? OF_BLEND : 1);
+}
+
+/// The mean of the picture that there is, sample 0, and of the others, which are not timed.
+Image RenderCommand::all_samples(screen::Frame& picture, const Scene& loaded, const Camera& camera,
+                                 bool software) const {
+  Image image = screen::image_from_texture(picture.radiance());
+  const int count = sample_count(loaded);
+  gl::PassTimer untimed(software, false);
+  for (int k = 1; k < count; ++k) {
+    picture.set_sample(k, count, samples.has_value());
+    picture.render(camera, untimed);
+    const Image other = screen::image_from_texture(picture.radiance());
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += other.pixels[i];
+  }
+  picture.set_sample(0, count, samples.has_value());
+  for (glm::vec3& p : image.pixels) p /= float(count);
+  return image;
+}
+
+void RenderCommand::write_picture(const Image& image, const std::filesystem::path& path) {
   warn_of_bad_pixels(image);
   if (!writes_png()) {
     write_exr(path, image, half);
@@ -143,13 +168,15 @@ void RenderCommand::write_picture(const screen::Frame& picture, const std::files
 
 /// What the command line adds, and for pictures to look at a lamp where there is no light at all.
 void RenderCommand::light(Scene& loaded, const Camera& camera) const {
-  scene.add_lights(loaded);
+  scene.light.apply(loaded);
   if (writes_png()) scene.add_default_lamp(loaded, camera);
 }
 
 /// Renders the same picture `frames` times, to time it.
-TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer) {
+TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer,
+                                        bool software) {
   const Camera camera = scene.camera(loaded);
+  picture.set_sample(0, sample_count(loaded), samples.has_value());
   // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a
   // cold frame's, and said to be.
   const int warm_up = frames > 1 ? 2 : 0;
@@ -161,13 +188,14 @@ TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loa
     timer.end_frame();
     if (f == 0) timed.cold = cold_frame(timer);
   }
-  write_picture(picture, out);
+  write_picture(all_samples(picture, loaded, camera, software), out);
   return timed;
 }
 
 /// Each picture is written, whole, before the next one begins.
 TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer) {
+                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer,
+                                            bool software) {
   TimedFrames timed{1, false, {}};
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
@@ -181,7 +209,7 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
     picture.render(scene.camera(moving), timer);
     timer.end_frame();
     if (k == 0) timed.cold = cold_frame(timer);
-    write_picture(picture, frame_path(out, k));
+    write_picture(all_samples(picture, moving, scene.camera(moving), software), frame_path(out, k));
     progress.advance();
     if (k == 0 && times.count > 1) {
       timer.reset();
@@ -197,7 +225,7 @@ nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen
   auto numbers = frame_stats(loaded.name, frame.technique(), scene.size(), context, timer, timed, picture.report());
   numbers["parameters"] = {{"light", frame.light},
                            {"scheme", frame.volume.scheme},
-                           {"grid", frame.volume.grid_cells},
+                           {"grid", options.of<VolumeOptions>().grid_cells},
                            {"set", frame.parameters}};
   for (const screen::Parameter* p : screen::parameters())
     numbers["parameters"][p->name] = screen::value_text(*p, options.settings);
@@ -209,12 +237,13 @@ int RenderCommand::run() {
   set_quiet(quiet);
   read_exposure();
   frame.volume.limit_threads();
-  const screen::FrameOptions options = frame.frame_options(scene.size());
+  screen::FrameOptions options = frame.frame_options(scene.size());
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
   check_outputs();
   const SceneSource source(scene.scene_path);
   const WorldBox box = box_of(source, times);
   Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
+  frame.volume.fit_grid(loaded, options.of<VolumeOptions>());
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
   const gl::Context context(device.context);
@@ -226,8 +255,9 @@ int RenderCommand::run() {
   }
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
-  const TimedFrames timed_frames = animate.empty() ? render_still(picture, loaded, timer)
-                                                   : render_animation(picture, source, loaded, times, box, timer);
+  const TimedFrames timed_frames =
+      animate.empty() ? render_still(picture, loaded, timer, context.software())
+                      : render_animation(picture, source, loaded, times, box, timer, context.software());
   const auto figures = numbers(picture, options, loaded, context, timer, timed_frames);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
@@ -255,6 +285,12 @@ void add_render_command(CLI::App& app, int& exit_code) {
                    "PNG only: stops (powers of two) before the tone map, or auto: middle grey for the geometric mean")
       ->type_name("EV|auto")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--samples", options->samples,
+          "pictures with jittered pixels that are averaged into one (1; where something is half transparent 8, "
+          "all of pixel centres)")
+      ->check(CLI::Range(1, 4096));
   command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
   CLI::Option* animate =
       command

@@ -10,26 +10,13 @@
 #include "apps/volgi/parse_number.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/sky.h"
 #include "core/visibility/room_camera.h"
 
 namespace volgi::app {
 namespace {
 
 constexpr int largest_edge = 16384;
-
-/// Comma-separated; none for what is not.
-std::vector<double> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  for (bool more = true; more;) {
-    const size_t comma = text.find(',');
-    const auto number = parse_number<double>(text.substr(0, comma));
-    if (!number) return {};
-    numbers.push_back(*number);
-    more = comma != std::string_view::npos;
-    if (more) text.remove_prefix(comma + 1);
-  }
-  return numbers;
-}
 
 std::vector<double> parse_point(const std::string& option, std::string_view text) {
   std::vector<double> point = parse_numbers(text);
@@ -68,10 +55,7 @@ void SceneOptions::add_to(CLI::App& command) {
       ->check(CLI::Range(0.1, 179.0))
       ->needs(from)
       ->capture_default_str();
-  command.add_option("--lamp", lamps, "a point light more, in the file's frame [m, cd]; may be repeated")
-      ->type_name("X,Y,Z,I");
-  command.add_option("--sun", suns, "a sun more: degrees over the horizon, degrees from -Z towards +X, lux (pi)")
-      ->type_name("ELEVATION,AZIMUTH[,LUX]");
+  light.add_to(command);
   command.add_option("--size", size_text, "Picture size in pixels")->type_name("WxH")->capture_default_str();
 }
 
@@ -88,42 +72,9 @@ glm::ivec2 SceneOptions::size() const {
   return {*width, *height};
 }
 
-void SceneOptions::add_lights(Scene& scene) const {
-  for (const std::string& text : lamps) {
-    const auto numbers = parse_numbers(text);
-    if (numbers.size() != 4 || !(numbers[3] >= 0.0))
-      throw Error(ExitCode::usage, fmt::format("--lamp {}: give X,Y,Z,I in metres and candela, such as 0,2,0,8", text));
-    Light lamp;
-    lamp.name = "--lamp " + text;
-    lamp.type = Light::Type::point;
-    lamp.position = centred(numbers, scene);
-    lamp.intensity = glm::vec3(float(numbers[3]));
-    scene.lights.push_back(lamp);
-  }
-  for (const std::string& text : suns) {
-    const auto numbers = parse_numbers(text);
-    if ((numbers.size() != 2 && numbers.size() != 3) || !(std::abs(numbers[0]) <= 90.0) ||
-        (numbers.size() == 3 && !(numbers[2] >= 0.0)))
-      throw Error(
-          ExitCode::usage,
-          fmt::format("--sun {}: give ELEVATION,AZIMUTH[,LUX] in degrees over the horizon and from -Z towards +X, "
-                      "such as 45,30",
-                      text));
-    const double elevation = glm::radians(numbers[0]), azimuth = glm::radians(numbers[1]);
-    const glm::dvec3 towards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
-                             -std::cos(elevation) * std::cos(azimuth));
-    Light sun;
-    sun.name = "--sun " + text;
-    sun.type = Light::Type::directional;
-    sun.direction = glm::vec3(-towards);
-    sun.intensity = glm::vec3(numbers.size() == 3 ? float(numbers[2]) : glm::pi<float>());
-    scene.lights.push_back(sun);
-  }
-}
-
 void SceneOptions::add_default_lamp(Scene& scene, const Camera& camera) const {
   const auto shines = [&](const Mesh& mesh) { return scene.materials[size_t(mesh.material)].is_emissive(); };
-  if (!scene.lights.empty() || std::any_of(scene.meshes.begin(), scene.meshes.end(), shines)) return;
+  if (!scene.lights.empty() || scene.sky || std::any_of(scene.meshes.begin(), scene.meshes.end(), shines)) return;
   if (no_default_light || scene.triangle_count() == 0) {
     warn_once(fmt::format("{}: no light and nothing that glows: the picture is black", scene.name));
     return;
@@ -140,10 +91,13 @@ void SceneOptions::add_default_lamp(Scene& scene, const Camera& camera) const {
   lamp.position = from + 0.05f * distance * up + 0.03f * distance * right;
   lamp.intensity = glm::vec3(glm::pi<float>() * distance * distance);
   scene.lights.push_back(lamp);
-  warn_once(
-      fmt::format("{}: no light and nothing that glows: a lamp stands beside the camera; --lamp X,Y,Z,I or --sun "
-                  "choose another, --no-default-light leaves it out",
-                  scene.name));
+  constexpr float SOFT = 0.25f;  // beside the 1 that the lamp makes of white at that distance
+  if (!default_sky) default_sky = std::make_shared<Sky>(glm::vec3(SOFT));
+  scene.sky = default_sky;
+  warn_once(fmt::format(
+      "{}: no light and nothing that glows: a soft sky, and a lamp beside the camera; --lamp X,Y,Z,I, --sun "
+      "or --sky choose another, --no-default-light leaves it out",
+      scene.name));
 }
 
 Camera SceneOptions::camera(const Scene& scene) const {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "voxel/grid.h"
 
 namespace volgi::app {
 
@@ -50,9 +51,10 @@ const char* scheme_name(Scheme scheme) {
 }
 
 void VolumeCommandOptions::add_to(CLI::App& command) {
-  command.add_option("--grid", grid_cells, "cells along the longest axis of the scene")
-      ->check(CLI::Range(1, VolumeOptions::kMaxGridCells))
-      ->capture_default_str();
+  command
+      .add_option("--grid", grid_cells,
+                  "cells along the longest axis of the scene (32, more where they would exceed 0.4 m)")
+      ->check(CLI::Range(1, VolumeOptions::kMaxGridCells));
   command.add_option("--scheme", scheme, "how the volume propagates light")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))
       ->capture_default_str();
@@ -74,7 +76,7 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
 
 VolumeOptions VolumeCommandOptions::volume_options() const {
   VolumeOptions o;
-  o.grid_cells = grid_cells;
+  if (grid_cells) o.grid_cells = *grid_cells;
   o.scheme.scheme = scheme_from_name(scheme);
   o.scheme.directions = directions;
   o.scheme.sh_order = sh_order;
@@ -86,6 +88,10 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
     throw Error(ExitCode::usage, "--sh-order 2 belongs to the schemes of spherical harmonics, not to 'ordinates'");
   bounce_rules(o, 0.5f);  // says what does not go together before anything is loaded
   return o;
+}
+
+void VolumeCommandOptions::fit_grid(const Scene& scene, VolumeOptions& options) const {
+  if (!grid_cells) options.grid_cells = automatic_grid_cells(scene);
 }
 
 void VolumeCommandOptions::limit_threads() const {

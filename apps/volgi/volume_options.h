@@ -17,12 +17,14 @@ struct VolumeCommandOptions {
   std::string scheme = "ordinates";
   std::optional<int> bounces, iterations, directions, threads;
   int sh_order = 1;
-  int grid_cells = 32;
+  std::optional<int> grid_cells;
   std::string memory_limit;  // bytes, with K, M or G
 
   void add_to(CLI::App& command);
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
+  /// Where --grid is not given: cells that suit the scene (automatic_grid_cells()).
+  void fit_grid(const Scene& scene, VolumeOptions& options) const;
   /// Limits the number of threads from here on (--threads); for the life of the program.
   void limit_threads() const;
 };

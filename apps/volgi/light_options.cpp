@@ -1,0 +1,135 @@
+#include "apps/volgi/light_options.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <string_view>
+
+#include "apps/volgi/parse_number.h"
+#include "core/error.h"
+#include "core/sky.h"
+
+namespace volgi::app {
+namespace {
+
+Light lamp_of(const std::string& text, const Scene& scene) {
+  const auto numbers = parse_numbers(text);
+  if (numbers.size() != 4 || !(numbers[3] >= 0.0))
+    throw Error(ExitCode::usage, fmt::format("--lamp {}: give X,Y,Z,I in metres and candela, such as 0,2,0,8", text));
+  Light lamp;
+  lamp.name = "--lamp " + text;
+  lamp.type = Light::Type::point;
+  lamp.position = glm::vec3(glm::dvec3(numbers[0], numbers[1], numbers[2]) - scene.world_origin);
+  lamp.intensity = glm::vec3(float(numbers[3]));
+  return lamp;
+}
+
+Light sun_of(const std::string& text) {
+  const auto numbers = parse_numbers(text);
+  if ((numbers.size() != 2 && numbers.size() != 3) || !(std::abs(numbers[0]) <= 90.0) ||
+      (numbers.size() == 3 && !(numbers[2] >= 0.0)))
+    throw Error(
+        ExitCode::usage,
+        fmt::format("--sun {}: give ELEVATION,AZIMUTH[,LUX] in degrees over the horizon and from -Z towards +X, "
+                    "such as 45,30",
+                    text));
+  const double elevation = glm::radians(numbers[0]), azimuth = glm::radians(numbers[1]);
+  const glm::dvec3 towards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
+                           -std::cos(elevation) * std::cos(azimuth));
+  Light sun;
+  sun.name = "--sun " + text;
+  sun.type = Light::Type::directional;
+  sun.direction = glm::vec3(-towards);
+  sun.intensity = glm::vec3(numbers.size() == 3 ? float(numbers[2]) : glm::pi<float>());
+  return sun;
+}
+
+/// Of sun:ELEVATION,AZIMUTH[,TURBIDITY], in radians.
+struct ClearSky {
+  double elevation, azimuth, turbidity;
+};
+constexpr std::string_view kClearSky = "sun:";
+
+ClearSky clear_sky_of(const std::string& text, double rotate_deg) {
+  const auto numbers = parse_numbers(std::string_view(text).substr(kClearSky.size()));
+  const bool well = (numbers.size() == 2 || numbers.size() == 3) && std::abs(numbers[0]) <= 90.0 &&
+                    (numbers.size() == 2 || (numbers[2] >= 1.7 && numbers[2] <= 10.0));
+  if (!well)
+    throw Error(ExitCode::usage,
+                fmt::format("--sky {}: give sun:ELEVATION,AZIMUTH[,TURBIDITY] in degrees over the horizon and from -Z "
+                            "towards +X, haze from 1.7 (clear) to 10, such as sun:35,120,3",
+                            text));
+  return {glm::radians(numbers[0]), glm::radians(numbers[1] + rotate_deg), numbers.size() == 3 ? numbers[2] : 3.0};
+}
+
+}  // namespace
+
+std::vector<double> parse_numbers(std::string_view text) {
+  std::vector<double> numbers;
+  for (bool more = true; more;) {
+    const size_t comma = text.find(',');
+    const auto number = parse_number<double>(text.substr(0, comma));
+    if (!number) return {};
+    numbers.push_back(*number);
+    more = comma != std::string_view::npos;
+    if (more) text.remove_prefix(comma + 1);
+  }
+  return numbers;
+}
+
+void LightOptions::add_to(CLI::App& command) {
+  command.add_option("--lamp", lamps, "a point light more, in the file's frame [m, cd]; may be repeated")
+      ->type_name("X,Y,Z,I");
+  command.add_option("--sun", suns, "a sun more: degrees over the horizon, degrees from -Z towards +X, lux (pi)")
+      ->type_name("ELEVATION,AZIMUTH[,LUX]");
+  command
+      .add_option("--sky", sky,
+                  "light from outside: a radiance; a latitude-longitude picture (.exr, row 0 is +Y, the middle looks "
+                  "along -Z); or sun:ELEVATION,AZIMUTH[,TURBIDITY], a clear sky and its sun in lux")
+      ->type_name("R,G,B|FILE.exr|sun:...");
+  command.add_option("--sky-rotate", sky_rotate_deg, "turns the sky about +Y, from -Z towards +X [degrees]")
+      ->capture_default_str();
+  command.add_option("--lamp-scale", lamp_scale, "times the intensity of the file's own lamps and suns")
+      ->check(CLI::Range(0.0, 1e12))
+      ->capture_default_str();
+  command
+      .add_option("--materials", materials,
+                  "gltf: surfaces shine as glTF's do; lambert: only their diffuse part, as the papers have it")
+      ->check(CLI::IsMember({"gltf", "lambert"}))
+      ->capture_default_str();
+}
+
+void LightOptions::set_sky(Scene& scene) const {
+  if (sky.empty()) return;
+  const bool clear = sky.starts_with(kClearSky);
+  if (clear) {
+    const ClearSky c = clear_sky_of(sky, sky_rotate_deg);
+    scene.lights.push_back(sun_of_clear_sky(c.elevation, c.azimuth, c.turbidity));
+    if (!made_sky_) made_sky_ = std::make_shared<Sky>(clear_sky(c.elevation, c.azimuth, c.turbidity));
+  } else if (!made_sky_) {
+    const auto numbers = parse_numbers(sky);
+    if (numbers.size() == 3 && std::min({numbers[0], numbers[1], numbers[2]}) >= 0.0) {
+      made_sky_ = std::make_shared<Sky>(glm::vec3(glm::dvec3(numbers[0], numbers[1], numbers[2])));
+    } else if (sky.ends_with(".exr") || sky.ends_with(".EXR")) {
+      made_sky_ = std::make_shared<Sky>(read_sky(sky, float(glm::radians(sky_rotate_deg))));
+    } else {
+      throw Error(ExitCode::usage,
+                  fmt::format("--sky {}: give a radiance R,G,B, a latitude-longitude picture FILE.exr, "
+                              "or sun:ELEVATION,AZIMUTH[,TURBIDITY]",
+                              sky));
+    }
+  }
+  scene.sky = made_sky_;
+}
+
+void LightOptions::apply(Scene& scene) const {
+  for (Light& light : scene.lights) light.intensity *= float(lamp_scale);
+  for (const std::string& text : lamps) scene.lights.push_back(lamp_of(text, scene));
+  for (const std::string& text : suns) scene.lights.push_back(sun_of(text));
+  set_sky(scene);
+  for (Material& m : scene.materials) m.lambertian = materials == "lambert";
+}
+
+}  // namespace volgi::app

@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/scene.h"
+
+namespace CLI {
+class App;
+}
+
+namespace volgi::app {
+
+/// Comma-separated; none for what is not.
+std::vector<double> parse_numbers(std::string_view text);
+
+/// What light and matter a command adds to a scene's own: --lamp, --sun, --sky, --sky-rotate, --lamp-scale,
+/// --materials.
+struct LightOptions {
+  std::vector<std::string> lamps, suns;
+  std::string sky;
+  double sky_rotate_deg = 0.0;
+  double lamp_scale = 1.0;
+  std::string materials = "gltf";
+
+  void add_to(CLI::App& command);
+  /// Once after every SceneSource::at() or move().
+  /// @throws Error(usage) naming the text that says nothing, Error(bad_input) as read_sky().
+  void apply(Scene& scene) const;
+
+ private:
+  void set_sky(Scene& scene) const;
+  mutable std::shared_ptr<const Sky> made_sky_;  // read or made once
+};
+
+}  // namespace volgi::app
