@@ -27,14 +27,15 @@ void main() {
   vec3 geometric_normal = octahedral_decode(normals.zw);
   // The light must be on the side of the triangle that the viewer sees.
   if (cosine <= 0.0 || dot(geometric_normal, to_light) <= 0.0 || irradiance == vec3(0.0)) discard;
-  irradiance *= rsm_visibility(light, position.xyz, geometric_normal);
+  float visibility = rsm_visibility(light, position.xyz, geometric_normal);
 #ifdef SHINES
   vec4 diffuse = texelFetch(diffuse_map, pixel, 0), mirror = texelFetch(mirror_map, pixel, 0);
   vec3 to_viewer = normalize(viewer.xyz - position.xyz * viewer.w);
   vec3 reflected = reflected_to_viewer(Shine(diffuse.rgb, mirror.rgb, mirror.a, diffuse.a), octahedral_decode(normals.xy),
                                        to_viewer, to_light);
+  radiance = vec4(reflected * (visibility * irradiance), 1.0);
 #else
-  vec3 reflected = texelFetch(albedo_map, pixel, 0).rgb / PI * cosine;
+  irradiance *= cosine * visibility;
+  radiance = vec4(texelFetch(albedo_map, pixel, 0).rgb / PI * irradiance, 1.0);
 #endif
-  radiance = vec4(reflected * irradiance, 1.0);
 }
