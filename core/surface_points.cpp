@@ -43,7 +43,7 @@ std::uint64_t spread_bits(std::uint64_t x) {  // 16 bits, two zeros between
 std::uint64_t place_of(const Scene& scene, const SurfaceSample& p) {
   const glm::vec3 a = glm::abs(p.normal);
   const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-  const auto facing = std::uint64_t(2 * axis + (p.normal[axis] < 0.0f ? 1 : 0));
+  const std::uint64_t facing = 2 * std::uint64_t(axis) + (p.normal[axis] < 0.0f ? 1 : 0);
   const glm::vec3 size = glm::max(scene.bounds_max - scene.bounds_min, glm::vec3(1e-20f));
   const glm::vec3 at = glm::clamp((p.position - scene.bounds_min) / size, 0.0f, 1.0f) * 65535.0f;
   return facing << 48 | spread_bits(std::uint64_t(at.x)) | spread_bits(std::uint64_t(at.y)) << 1 |

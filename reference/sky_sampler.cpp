@@ -44,8 +44,8 @@ SkySampler::SkySampler(const Sky& sky) : sky_(sky), width_(sky.image().width), h
   for (int y = 0; y < height_; ++y) {
     const double dw = std::cos(kPi * y / height_) - std::cos(kPi * (y + 1) / height_);
     double row = 0.0;
-    for (int x = 0; x < width_; ++x) columns_[size_t(y * width_ + x)] = row += luminance_in(image, x, y) * dw;
-    for (int x = 0; x < width_ && row > 0.0; ++x) columns_[size_t(y * width_ + x)] /= row;
+    for (int x = 0; x < width_; ++x) columns_[index(x, y)] = row += luminance_in(image, x, y) * dw;
+    for (int x = 0; x < width_ && row > 0.0; ++x) columns_[index(x, y)] /= row;
     rows_[size_t(y)] = total += row;
   }
   if (!(total > 0.0)) return;
@@ -53,14 +53,15 @@ SkySampler::SkySampler(const Sky& sky) : sky_(sky), width_(sky.image().width), h
   for (int y = 0; y < height_; ++y) {
     const double row = rows_[size_t(y)] - (y > 0 ? rows_[size_t(y - 1)] : 0.0);
     for (int x = 0; x < width_; ++x) {
-      const size_t i = size_t(y * width_ + x);
+      const size_t i = index(x, y);
       texels_[i] = float(row * (columns_[i] - (x > 0 ? columns_[i - 1] : 0.0)));
     }
   }
 }
 
 float SkySampler::texel_pdf(size_t texel) const {
-  const double y = double(texel / size_t(width_));
+  const size_t row = texel / size_t(width_);
+  const auto y = double(row);
   const double dw = 2.0 * kPi / width_ * (std::cos(kPi * y / height_) - std::cos(kPi * (y + 1.0) / height_));
   return float(texels_[texel] / dw);
 }

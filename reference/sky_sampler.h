@@ -22,6 +22,7 @@ class SkySampler {
   float pdf(glm::vec3 towards) const;
 
  private:
+  size_t index(int x, int y) const { return size_t(y) * size_t(width_) + size_t(x); }
   float texel_pdf(size_t texel) const;  // per solid angle
 
   const Sky& sky_;
