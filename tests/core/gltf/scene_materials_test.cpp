@@ -3,9 +3,9 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "core/error.h"
 #include "core/image.h"
 #include "core/log.h"
-#include "core/error.h"
 #include "core/scene.h"
 #include "core/surface.h"
 #include "shaders/shared/material.shared.h"
