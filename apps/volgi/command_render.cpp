@@ -197,6 +197,7 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
                                             const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer,
                                             bool software) {
   TimedFrames timed{1, false, {}};
+  picture.set_sample(0, sample_count(moving), samples.has_value());
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
     timer.begin_frame();

@@ -84,12 +84,15 @@ void LightOptions::add_to(CLI::App& command) {
       ->type_name("X,Y,Z,I");
   command.add_option("--sun", suns, "a sun more: degrees over the horizon, degrees from -Z towards +X, lux (pi)")
       ->type_name("ELEVATION,AZIMUTH[,LUX]");
-  command
-      .add_option("--sky", sky,
-                  "light from outside: a radiance; a latitude-longitude picture (.exr, row 0 is +Y, the middle looks "
-                  "along -Z); or sun:ELEVATION,AZIMUTH[,TURBIDITY], a clear sky and its sun in lux")
-      ->type_name("R,G,B|FILE.exr|sun:...");
+  CLI::Option* of_sky =
+      command
+          .add_option(
+              "--sky", sky,
+              "light from outside: a radiance; a latitude-longitude picture (.exr, row 0 is +Y, the middle looks "
+              "along -Z); or sun:ELEVATION,AZIMUTH[,TURBIDITY], a clear sky and its sun in lux")
+          ->type_name("R,G,B|FILE.exr|sun:...");
   command.add_option("--sky-rotate", sky_rotate_deg, "turns the sky about +Y, from -Z towards +X [degrees]")
+      ->needs(of_sky)
       ->capture_default_str();
   command.add_option("--lamp-scale", lamp_scale, "times the intensity of the file's own lamps and suns")
       ->check(CLI::Range(0.0, 1e12))

@@ -74,7 +74,8 @@ glm::ivec2 SceneOptions::size() const {
 
 void SceneOptions::add_default_lamp(Scene& scene, const Camera& camera) const {
   const auto shines = [&](const Mesh& mesh) { return scene.materials[size_t(mesh.material)].is_emissive(); };
-  if (!scene.lights.empty() || scene.sky || std::any_of(scene.meshes.begin(), scene.meshes.end(), shines)) return;
+  const bool has_sky = scene.sky && scene.sky != default_sky;  // of an earlier frame
+  if (!scene.lights.empty() || has_sky || std::any_of(scene.meshes.begin(), scene.meshes.end(), shines)) return;
   if (no_default_light || scene.triangle_count() == 0) {
     warn_once(fmt::format("{}: no light and nothing that glows: the picture is black", scene.name));
     return;

@@ -62,6 +62,8 @@ std::unique_ptr<Stage> Frame::take_stage(std::vector<Step>& from, const Plan::St
 }
 
 void Frame::warn_of_missing_light(LightPaths missing) const {
+  if (missing.contains(LightPath::sky_direct))
+    warn_once(scene_.name + ": the sky is seen but lights nothing with --gi " + recipe_.name + " and these options");
   const bool bounces_asked = options_.bounces && *options_.bounces > 1;
   if (missing.contains(LightPath::emission_direct)) {
     warn_once(scene_.name + ": emissive surfaces are seen but light nothing with --gi " + recipe_.name);

@@ -1,11 +1,14 @@
 #include "screen/sources/sky/sky_maps.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
 #include "core/gl/limits.h"
 #include "core/gl/raster_state.h"
 #include "core/light_layers.h"
+#include "core/log.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
 
 namespace volgi::screen {
@@ -28,6 +31,13 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
     layers_.push_back(reflective_shadow_layers(sun, resolution_, scene.bounds_min, scene.bounds_max).front());
   }
   upload_parts();
+  constexpr float COARSE_M = 0.5f;  // half of it is more than most walls are thick
+  const float texel_m = glm::distance(scene.bounds_min, scene.bounds_max) / float(resolution_);
+  if (texel_m > COARSE_M)
+    warn_once(
+        fmt::format("{}: the sky's maps have texels of {:.2g} m: its light may pass walls thinner than half of that; "
+                    "--set sky.map=N makes more of them",
+                    scene.name, double(texel_m)));
   if (framebuffers_.size() != layers_.size()) {
     const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
     depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, part_count());
