@@ -61,7 +61,6 @@ vec3 mapped_normal(vec3 n) {
 
 void main() {
   vec4 base = material_base(uv0, uv1, color);
-  if (!material_keeps(base.a, uvec3(gl_FragCoord.xy, object_id * 65599u + uint(gl_PrimitiveID)))) discard;
   bool front = dot(geometric_normal, viewer.xyz - position * viewer.w) >= 0.0;
   vec3 geometric = front ? geometric_normal : -geometric_normal;
   vec3 shading = length(shading_normal) > 0.0 ? normalize(shading_normal) : geometric_normal;
@@ -84,4 +83,6 @@ void main() {
   out_emission = vec4(emits ? material_emission(uv0, uv1) : vec3(0.0), 1.0);
   if (material_unlit != 0) out_emission.rgb = base.rgb;
   out_object_id = object_id;
+  // Last: what changes from pixel to pixel is not known any more behind it.
+  if (!material_keeps(base.a, uvec3(gl_FragCoord.xy, object_id * 65599u + uint(gl_PrimitiveID)))) discard;
 }

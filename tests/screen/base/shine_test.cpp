@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <string>
 
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
@@ -59,7 +60,8 @@ class Shine : public GlTest {
     const Image ours = render(context(), scene, camera, o).image;
     const RegionLayers layers{reference.position, reference.normal, reference.direct, reference.id, reference.depth};
     const Metrics m = measure(reference.color, ours, nullptr, region_mask(Region::noedge, layers));
-    EXPECT_LT(m.relative.value().rmse_pct, 1.0);
+    RecordProperty("rmse_percent", std::to_string(m.relative.value().rmse_pct));
+    EXPECT_LT(m.relative->rmse_pct, 0.05);  // measured: 0.002 to 0.006; a mirror 10 % too bright is 0.19
     EXPECT_NEAR(m.relative->ratio, 1.0, 0.002);
   }
 };
