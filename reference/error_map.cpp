@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "shaders/shared/color_maps.shared.h"
+
 namespace volgi {
 namespace {
 
@@ -28,10 +30,7 @@ constexpr std::array kFont{
     Glyph{'r', {0, 0, 22, 25, 16, 16, 16}},   Glyph{'t', {8, 8, 28, 8, 8, 9, 6}},
 };
 
-glm::vec3 error_color(float relative) {
-  const float e = std::clamp(relative / kSaturation, -1.0f, 1.0f);
-  return {1.0f + std::min(e, 0.0f), 1.0f - std::abs(e), 1.0f - std::max(e, 0.0f)};
-}
+glm::vec3 error_color(float relative) { return shared::difference_color(relative / kSaturation); }
 
 void draw_text(Image& image, int x, int y, std::string_view text) {
   for (const char character : text) {

@@ -4,7 +4,6 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "core/progress.h"
@@ -35,20 +34,23 @@ void write_first_hit(ReferencePicture& picture, glm::ivec2 pixel, const Scene& s
   picture.depth[i] = vertex.distance * glm::dot(ray.direction, view_axis);
 }
 
+PictureTiles::PictureTiles(glm::ivec2 size)
+    : size_(size), columns_((size.x + SIZE - 1) / SIZE), rows_((size.y + SIZE - 1) / SIZE) {}
+
 void for_each_pixel(glm::ivec2 size, int threads, const std::string& title,
                     const std::function<void(int, int)>& shade) {
-  constexpr int tile = 16;
   std::unique_ptr<tbb::global_control> limit;
   if (threads > 0)
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, size_t(threads));
-  const int rows = (size.y + tile - 1) / tile, columns = (size.x + tile - 1) / tile;
-  Progress progress(title, static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(columns));
+  const PictureTiles tiles(size);
+  Progress progress(title, static_cast<std::uint64_t>(tiles.count()));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    tbb::parallel_for(0, rows * columns, [&](int index) {
-      const int x0 = index % columns * tile, y0 = index / columns * tile;
-      for (int y = y0; y < std::min(y0 + tile, size.y); ++y)
-        for (int x = x0; x < std::min(x0 + tile, size.x); ++x) shade(x, y);
+    tbb::parallel_for(0, tiles.count(), [&](int tile) {
+      tiles.for_each_pixel(tile, [&](int x, int y) {
+        shade(x, y);
+        return true;
+      });
       progress.advance();
     });
   });

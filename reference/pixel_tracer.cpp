@@ -13,11 +13,14 @@ glm::dvec3 asked_for(const LightSum& sum, AskedLight light) {
 }
 
 PixelTracer::PixelTracer(const Scene& scene, const Camera& camera, const PathTracerOptions& options)
-    : camera_(camera),
-      options_(options),
-      integrator_(scene),
-      max_bounces_(options.light == AskedLight::direct ? 0 : options.max_bounces.value_or(PathIntegrator::unlimited)),
-      starts_at_centre_(options.filter == PathTracerOptions::Filter::point && !integrator_.has_blending()) {}
+    : camera_(camera), options_(options), integrator_(scene) {
+  options_changed();
+}
+
+void PixelTracer::options_changed() {
+  max_bounces_ = options_.light == AskedLight::direct ? 0 : options_.max_bounces.value_or(PathIntegrator::unlimited);
+  starts_at_centre_ = options_.filter == PathTracerOptions::Filter::point && !integrator_.has_blending();
+}
 
 bool PixelTracer::centre(glm::ivec2 pixel, CameraRay& ray, PathVertex& vertex) const {
   ray = camera_ray(camera_, glm::vec2(pixel) + 0.5f, options_.size);

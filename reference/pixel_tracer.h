@@ -17,6 +17,8 @@ glm::dvec3 asked_for(const LightSum& sum, PathTracerOptions::Light light);
 class PixelTracer {
  public:
   PixelTracer(const Scene& scene, const Camera& camera, const PathTracerOptions& options);
+  /// Camera and options have changed in place. Not while pixels are traced.
+  void options_changed();
 
   /// What the camera sees at the pixel's centre; false where it sees nothing.
   bool centre(glm::ivec2 pixel, CameraRay& ray, PathVertex& vertex) const;
@@ -38,8 +40,8 @@ class PixelTracer {
   const Camera& camera_;
   const PathTracerOptions& options_;
   PathIntegrator integrator_;
-  int max_bounces_;
-  bool starts_at_centre_;
+  int max_bounces_ = 0;
+  bool starts_at_centre_ = false;
 };
 
 }  // namespace volgi

@@ -1,7 +1,7 @@
 #include "core/visibility/embree_scene.h"
 
 #include <embree3/rtcore.h>
-#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -161,7 +161,8 @@ struct EmbreeScene::Data {
 
 EmbreeScene::EmbreeScene(const Scene& scene) : data_(std::make_unique<Data>()) {
   // One thread: a parallel build may order triangles by scheduling, which shows where two are met at the same distance.
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  // An arena of the caller's own, so that nobody else in the program is held to one thread meanwhile.
+  tbb::task_arena one_thread(1);
   data_->shared.scene = &scene;
   for (const Mesh& mesh : scene.meshes)
     for (const glm::vec3& p : mesh.positions)
@@ -172,7 +173,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : data_(std::make_unique<Data>()) {
   rtcSetSceneFlags(data_->embree, RTC_SCENE_FLAG_ROBUST);
   for (size_t i = 0; i < scene.meshes.size(); ++i)
     if (!scene.meshes[i].triangles.empty()) data_->attach(static_cast<std::uint32_t>(i), scene.meshes[i]);
-  rtcCommitScene(data_->embree);
+  one_thread.execute([this] { rtcCommitScene(data_->embree); });
   data_->check("building");
 }
 

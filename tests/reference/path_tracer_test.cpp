@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -290,6 +291,51 @@ TEST(ProgressivePathTracer, BytesDependNeitherOnStepsNorOnThreads) {
     EXPECT_EQ(in_steps.samples_per_pixel(), 8);
     const Image a = at_once.image(), b = in_steps.image();
     EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)), 0);
+  }
+}
+
+// Traced part by part, backwards, after another picture that was broken off.
+TEST(ProgressivePathTracer, PartsMakeTheSameBytes) {
+  for (const Scene& scene : with_and_without_veil()) {
+    const PathTracerOptions options = small(0);
+    ProgressivePathTracer whole(scene, kInside, options);
+    whole.trace(3);
+    PathTracerOptions other = options;
+    other.size = {50, 20};
+    other.light = PathTracerOptions::Light::direct;
+    ProgressivePathTracer in_parts(scene, kInside, other);
+    std::atomic<bool> cancelled{false};
+    EXPECT_TRUE(in_parts.trace_part(0, cancelled));
+    cancelled = true;
+    EXPECT_FALSE(in_parts.trace_part(1, cancelled));
+    cancelled = false;
+    in_parts.restart(kInside, options);
+    for (int sample = 0; sample < 3; ++sample) {
+      for (int part = in_parts.part_count() - 1; part >= 0; --part) EXPECT_TRUE(in_parts.trace_part(part, cancelled));
+      in_parts.finish_sample();
+    }
+    const Image a = whole.image(), b = in_parts.image();
+    EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)), 0);
+    EXPECT_TRUE(whole.noise().pixels.empty());
+  }
+}
+
+// The halves of path_trace(), in turn; sums are rounded in another order.
+TEST(ProgressivePathTracer, TwoPointSetsAreTheHalvesOfPathTrace) {
+  for (const Scene& scene : with_and_without_veil()) {
+    const PathTracerOptions options = small(8);
+    const ReferencePicture whole = path_trace(scene, kInside, options);
+    ProgressivePathTracer tracer(scene, kInside, options, ProgressivePathTracer::PointSets::two);
+    tracer.trace(1);
+    EXPECT_TRUE(tracer.noise().pixels.empty());
+    for (const int samples : {2, 5}) tracer.trace(samples);
+    const Image image = tracer.image(), noise = tracer.noise();
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+      const glm::vec3 half_difference = 0.5f * (whole.half_a.pixels[i] - whole.half_b.pixels[i]);
+      const float tolerance = 1e-6f * (1.0f + glm::length(whole.color.pixels[i]));
+      ASSERT_LT(glm::distance(image.pixels[i], whole.color.pixels[i]), tolerance);
+      ASSERT_LT(glm::distance(noise.pixels[i], half_difference), tolerance);
+    }
   }
 }
 
