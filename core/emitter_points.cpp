@@ -9,6 +9,7 @@
 #include "core/halton.h"
 #include "core/hilbert.h"
 #include "core/luminance.h"
+#include "core/sample_sequence.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -98,19 +99,21 @@ EmitterPoints::EmitterPoints(const Scene& scene) : scene_(&scene) {
   for (double& c : cumulative_) c /= total;
 }
 
-std::vector<EmitterPoint> EmitterPoints::points(int count) const {
+std::vector<EmitterPoint> EmitterPoints::points(int count, int sample) const {
   std::vector<EmitterPoint> points;
   if (empty()) return points;
   points.reserve(size_t(count));
   std::vector<std::uint64_t> places;  // side, then place on the curve
   places.reserve(size_t(count));
+  const double in_stratum = place_in_strata(std::uint64_t(sample));
+  const std::uint64_t first = first_halton_point(std::uint64_t(sample), count);
   size_t side = 0;
   for (int i = 0; i < count; ++i) {
-    while (side + 1 < sides_.size() && cumulative_[side] <= (i + 0.5) / count) ++side;
+    while (side + 1 < sides_.size() && cumulative_[side] <= (i + in_stratum) / count) ++side;
     const Side& s = sides_[side];
     const double probability = cumulative_[side] - (side > 0 ? cumulative_[side - 1] : 0.0);
     const double area = s.area_m2 / (probability * count);
-    const glm::dvec2 xi = halton(std::uint64_t(i) + 1);
+    const glm::dvec2 xi = halton(first + std::uint64_t(i));
     const double root = std::sqrt(xi.x);  // even by area
     const Mesh& mesh = scene_->meshes[s.mesh];
     const SurfacePoint p = surface_point(*scene_, mesh, s.triangle, float(1.0 - root), float(root * xi.y));

@@ -25,11 +25,11 @@ class EmitterPoints {
   bool empty() const { return sides_.empty(); }
   /// Power leaving all emissive surfaces [W]: pi times the integral of emitted radiance, times alpha.
   glm::dvec3 flux() const { return flux_; }
-  /// `count` points, the same ones every time: strata of equal power, Halton points in each triangle, in the order of
-  /// Hilbert's curve there, so that points that follow on each other are a piece of surface. Without
-  /// textures the luminance of their flux sums to that of flux() exactly, else as well as that many points sample a
-  /// texture.
-  std::vector<EmitterPoint> points(int count) const;
+  /// `count` points, the same ones every time for a `sample` of core/sample_sequence.h: strata of equal power, Halton
+  /// points in each triangle, in the order of Hilbert's curve there, so that points that follow on each other are a
+  /// piece of surface. Without textures the luminance of their flux sums to that of flux() exactly, else as well as
+  /// that many points sample a texture.
+  std::vector<EmitterPoint> points(int count, int sample = 0) const;
 
  private:
   struct Side {

@@ -29,14 +29,17 @@ inline glm::dvec2 halton(std::uint64_t i) { return {radical_inverse(2, i), radic
 /// depart: the pole of the sphere is the cone's axis, so that the points are the same wherever the cone turns. Then a
 /// point is inside when Phi_3(i) >= 1 - cone_height / 2, which needs the last digits of i in base 3 to be 2s, as many
 /// as the bound begins with: only those i are tried, and fewer than three for every point that is taken.
-inline std::vector<glm::vec3> halton_directions_in_cone(double cone_height, int count) {
+/// @param skip  as many points that come before, but for those few by which an even share of them errs.
+inline std::vector<glm::vec3> halton_directions_in_cone(double cone_height, int count, std::uint64_t skip = 0) {
   assert(cone_height > 0.0 && cone_height <= 2.0);
   cone_height = std::max(cone_height, 1e-10);  // 1e-5 rad; indices stay below 2^63
   std::uint64_t stride = 1;
   while (double(stride) * 3.0 * cone_height <= 2.0) stride *= 3;
   std::vector<glm::vec3> directions;
   directions.reserve(size_t(count));
-  for (std::uint64_t i = stride > 1 ? stride - 1 : 1; directions.size() < size_t(count); i += stride) {
+  const std::uint64_t first = stride > 1 ? stride - 1 : 1;
+  const auto skipped = std::uint64_t(std::llround(double(skip) / (0.5 * cone_height * double(stride))));
+  for (std::uint64_t i = first + stride * skipped; directions.size() < size_t(count); i += stride) {
     const double height = 2.0 * (1.0 - radical_inverse(3, i));  // 1 - sin(delta)
     if (height > cone_height) continue;
     const double phi = 2.0 * glm::pi<double>() * radical_inverse(2, i);

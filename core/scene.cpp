@@ -140,6 +140,14 @@ SceneFile& SceneFile::operator=(SceneFile&&) noexcept = default;
 
 bool SceneFile::animated() const { return !data_->channels.empty(); }
 
+double SceneFile::last_key_s() const {
+  double last = 0.0;
+  for (const gltf::Channel& channel : data_->channels) {
+    if (!channel.times_s.empty()) last = std::max(last, double(channel.times_s.back()));
+  }
+  return last;
+}
+
 /// What does not move.
 Scene SceneFile::Data::still() const {
   Scene scene;

@@ -160,6 +160,8 @@ class SceneFile {
   /// Around all triangles at a time; empty when there are none.
   WorldBox bounds(double time_s) const;
   bool animated() const;
+  /// Time of the last key of all animations [s]; 0 without any.
+  double last_key_s() const;
 
  private:
   struct Data;
@@ -172,6 +174,11 @@ Scene load_scene(const std::filesystem::path& path, double time_s = 0.0);
 /// Removes triangles that lie exactly on an earlier one with the same front: one surface, not two, for everything that
 /// counts area or emission. Triangles back to back stay. @returns how many went. Cost: one hash a triangle.
 size_t drop_duplicate_triangles(Scene& scene);
+
+/// Puts what `other` has beside what `scene` has: geometry and lights where they are in the world, cameras behind
+/// scene's; its sky where scene has none. Bounds and origin stay those of `scene` but for growing, so that what lies
+/// far from its origin loses precision.
+void append_scene(Scene& scene, const Scene& other);
 
 /// Recomputes bounds_min and bounds_max from the meshes (for scenes built in code).
 void update_bounds(Scene& scene);

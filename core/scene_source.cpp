@@ -17,10 +17,12 @@ struct SceneSource::BuiltIn {
   Scene (*at)(double time_s);
   void (*move)(Scene& scene, double time_s);
   WorldBox (*bounds)();
+  double period_s;
 };
 
 const SceneSource::BuiltIn& SceneSource::built_in(std::string_view name) {
-  static constexpr std::array known{BuiltIn{"metaballs", metaballs_scene, move_metaballs, metaballs_bounds}};
+  static constexpr std::array known{
+      BuiltIn{"metaballs", metaballs_scene, move_metaballs, metaballs_bounds, Metaballs::kPeriod_s}};
   const auto* found = std::find_if(known.begin(), known.end(), [&](const BuiltIn& b) { return b.name == name; });
   if (found != known.end()) return *found;
   std::string names;
@@ -53,6 +55,15 @@ void SceneSource::move(Scene& scene, double time_s, const WorldBox& box) const {
 }
 
 WorldBox SceneSource::bounds(double time_s) const { return file_ ? file_->bounds(time_s) : built_in_->bounds(); }
+
+double SceneSource::duration_s() const { return file_ ? file_->last_key_s() : built_in_->period_s; }
+
+WorldBox SceneSource::whole_bounds() const {
+  constexpr int STEPS = 64;
+  WorldBox box = bounds(0.0);
+  for (int k = 1; k <= STEPS && animated(); ++k) box.add(bounds(duration_s() * k / STEPS));
+  return box;
+}
 
 bool SceneSource::animated() const { return !file_ || file_->animated(); }
 

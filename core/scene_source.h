@@ -28,8 +28,12 @@ class SceneSource {
   /// As SceneFile: `scene` came from this source.
   void move(Scene& scene, double time_s, const WorldBox& box) const;
   WorldBox bounds(double time_s) const;
+  /// Around all triangles at 65 times from 0 to duration_s(): the box in which an animation is looked at.
+  WorldBox whole_bounds() const;
   /// Whether time changes anything.
   bool animated() const;
+  /// As SceneFile::last_key_s(); of what is built in, its period.
+  double duration_s() const;
 
  private:
   struct BuiltIn;

@@ -7,10 +7,13 @@
 #include <atomic>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
 #include "core/luminance.h"
+#include "core/sample_sequence.h"
 
 namespace volgi {
 namespace {
@@ -90,13 +93,14 @@ Sky read_sky(const std::filesystem::path& file, float rotation_rad) {
 
 namespace {
 
-std::vector<SkyLight> fibonacci_lights(glm::vec3 radiance, int count) {
+std::vector<SkyLight> fibonacci_lights(glm::vec3 radiance, int count, std::uint64_t sample) {
   std::vector<SkyLight> lights;
+  const double turn = 2.0 * kPi * sample_shift(SampleChoice::sky_azimuth, sample), step = place_in_strata(sample);
   const double golden = kPi * (3.0 - std::sqrt(5.0));
   const auto solid_angle = float(4.0 * kPi / count);
   for (int i = 0; i < count; ++i) {
-    const double y = 1.0 - (2.0 * i + 1.0) / count, r = std::sqrt(1.0 - y * y);
-    const glm::dvec3 towards(r * std::sin(golden * i), y, -r * std::cos(golden * i));
+    const double y = 1.0 - (2.0 * i + 2.0 * step) / count, r = std::sqrt(1.0 - y * y);
+    const glm::dvec3 towards(r * std::sin(golden * i + turn), y, -r * std::cos(golden * i + turn));
     lights.push_back({glm::vec3(-towards), solid_angle, radiance * solid_angle});
   }
   return lights;
@@ -141,6 +145,11 @@ class SummedSky {
   std::vector<Sum> sums_;
 };
 
+struct SkyPart {
+  glm::ivec4 texels;  // x, y, end x, end y
+  SkyLight light;
+};
+
 struct Box {
   glm::ivec4 texels;  // x, y, end x, end y
   double weight;
@@ -170,7 +179,7 @@ std::pair<glm::ivec4, glm::ivec4> halves(const SummedSky& sky, glm::ivec4 box, a
   return {first, second};
 }
 
-std::vector<SkyLight> median_cut_lights(const Sky& sky, int count) {
+std::vector<SkyPart> median_cut_parts(const Sky& sky, int count) {
   constexpr double kBySolidAngle = 0.25;
   const SummedSky sums(sky);
   const glm::ivec4 all(0, 0, sums.width(), sums.height());
@@ -198,21 +207,72 @@ std::vector<SkyLight> median_cut_lights(const Sky& sky, int count) {
     }
   }
   heap.insert(heap.end(), whole.begin(), whole.end());
-  std::vector<SkyLight> lights;
+  std::vector<SkyPart> parts;
   for (const Box& box : heap) {
     const SummedSky::Sum s = sums.over(box.texels);
-    lights.push_back({-glm::vec3(glm::normalize(s.towards)), float(s.solid_angle_sr),
-                      glm::max(glm::vec3(s.irradiance), glm::vec3(0.0f))});
+    parts.push_back({box.texels,
+                     {-glm::vec3(glm::normalize(s.towards)), float(s.solid_angle_sr),
+                      glm::max(glm::vec3(s.irradiance), glm::vec3(0.0f))}});
   }
-  std::stable_sort(lights.begin(), lights.end(),
-                   [](const SkyLight& a, const SkyLight& b) { return a.direction.y < b.direction.y; });
-  return lights;
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const SkyPart& a, const SkyPart& b) { return a.light.direction.y < b.light.direction.y; });
+  return parts;
+}
+
+/// Index of the weight that `at` of all of them together meets; `at` is then how far into it, both in [0, 1).
+int choose(std::span<const double> weights, double& at) {
+  double left = at * std::accumulate(weights.begin(), weights.end(), 0.0);
+  size_t k = 0;
+  while (k + 1 < weights.size() && left >= weights[k]) left -= weights[k++];
+  at = weights[k] > 0.0 ? std::clamp(left / weights[k], 0.0, 1.0) : 0.5;
+  return int(k);
+}
+
+/// Where in the box a place of the unit square lies, by the light that comes from there.
+glm::vec3 direction_in_box(const Sky& sky, glm::ivec4 box, glm::dvec2 at) {
+  const auto weight = [&](int x, int y) {
+    return (double(luminance(glm::dvec3(sky.image().at(x, y)))) + 1e-30) * texel_solid_angle_sr(sky.image(), y);
+  };
+  std::vector<double> rows, columns;
+  for (int y = box.y; y < box.w; ++y) {
+    double row = 0.0;
+    for (int x = box.x; x < box.z; ++x) row += weight(x, y);
+    rows.push_back(row);
+  }
+  const int y = box.y + choose(rows, at.y);
+  for (int x = box.x; x < box.z; ++x) columns.push_back(weight(x, y));
+  const int x = box.x + choose(columns, at.x);
+  return sky.direction_at(x + at.x, y + at.y);
 }
 
 }  // namespace
 
 std::vector<SkyLight> sky_lights(const Sky& sky, int count) {
-  return sky.constant() ? fibonacci_lights(sky.image().pixels[0], count) : median_cut_lights(sky, count);
+  if (sky.constant()) return fibonacci_lights(sky.image().pixels[0], count, 0);
+  std::vector<SkyLight> lights;
+  for (const SkyPart& part : median_cut_parts(sky, count)) lights.push_back(part.light);
+  return lights;
+}
+
+SkyParts::SkyParts(std::shared_ptr<const Sky> sky, int count) : sky_(std::move(sky)), count_(count) {
+  if (sky_->constant()) return;
+  for (const SkyPart& part : median_cut_parts(*sky_, count)) {
+    boxes_.push_back(part.texels);
+    lights_.push_back(part.light);
+  }
+}
+
+std::vector<SkyLight> SkyParts::lights(int sample) const {
+  const auto k = std::uint64_t(sample);
+  if (sky_->constant()) return fibonacci_lights(sky_->image().pixels[0], count_, k);
+  std::vector<SkyLight> lights = lights_;
+  if (sample == 0) return lights;
+  const glm::dvec2 moved(sample_shift(SampleChoice::sky_azimuth, k), place_in_strata(k));
+  for (size_t i = 0; i < lights.size(); ++i) {  // Halton's points, so that boxes do not all look the same way
+    const glm::dvec2 at = glm::fract(halton(i + 1) + moved);
+    lights[i].direction = -direction_in_box(*sky_, boxes_[i], at);
+  }
+  return lights;
 }
 
 // --- the analytic one -----------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,21 @@ struct SkyLight {
 /// of what a box holds is its solid angle, so that no dark part of the sky gets so few lights that its shadows show.
 /// The order has no meaning, but that any `count` / n that follow on one another at steps of n are spread over all.
 std::vector<SkyLight> sky_lights(const Sky& sky, int count);
+
+/// The same parts, of other directions in every picture of those that are averaged (core/sample_sequence.h): a constant
+/// sky's lattice is turned and moved, and of a picture's boxes a place is drawn by the light that comes from it.
+class SkyParts {
+ public:
+  SkyParts(std::shared_ptr<const Sky> sky, int count);
+  /// As sky_lights() for sample 0. Cost of others: one look at every texel.
+  std::vector<SkyLight> lights(int sample) const;
+
+ private:
+  std::shared_ptr<const Sky> sky_;
+  int count_;
+  std::vector<glm::ivec4> boxes_;  // of lights_: x, y, end x, end y [texels]; none of a constant sky
+  std::vector<SkyLight> lights_;
+};
 
 /// A clear sky (Preetham, Shirley and Smits 1999, "A Practical Analytic Model for Daylight") in cd/m^2 read as W m^-2
 /// sr^-1, without the sun's disk; below the horizon what ground of albedo 0.2 sends back.

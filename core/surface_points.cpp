@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/halton.h"
+#include "core/sample_sequence.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -52,20 +53,22 @@ std::uint64_t place_of(const Scene& scene, const SurfaceSample& p) {
 
 }  // namespace
 
-std::vector<SurfaceSample> surface_points(const Scene& scene, int count) {
+std::vector<SurfaceSample> surface_points(const Scene& scene, int count, int sample) {
   const std::vector<Triangle> triangles = triangles_by_area(scene);
   std::vector<SurfaceSample> points;
   if (triangles.empty() || count < 1) return points;
   const double each_m2 = 2.0 * triangles.back().cumulative_m2 / count;  // both sides
+  const double in_stratum = place_in_strata(std::uint64_t(sample));
+  const std::uint64_t first = first_halton_point(std::uint64_t(sample), count);
   size_t at = 0;
   for (int i = 0; i < count; ++i) {
-    while (at + 1 < triangles.size() && triangles[at].cumulative_m2 <= (i + 0.5) * each_m2 * 0.5) ++at;
+    while (at + 1 < triangles.size() && triangles[at].cumulative_m2 <= (i + in_stratum) * each_m2 * 0.5) ++at;
     const Mesh& mesh = scene.meshes[triangles[at].mesh];
-    const glm::dvec2 xi = halton(std::uint64_t(i) + 1);
+    const glm::dvec2 xi = halton(first + std::uint64_t(i));
     const double root = std::sqrt(xi.x);  // even by area
     const SurfacePoint p = surface_point(scene, mesh, triangles[at].triangle, float(1.0 - root), float(root * xi.y));
     // Sides by the next digit of another sequence, so that both get their half in every neighbourhood.
-    const bool back = radical_inverse(5, std::uint64_t(i) + 1) >= 0.5;
+    const bool back = radical_inverse(5, first + std::uint64_t(i)) >= 0.5;
     points.push_back({p.position, back ? -p.geometric_normal : p.geometric_normal, p.albedo * p.alpha, float(each_m2)});
   }
   std::vector<std::pair<std::uint64_t, size_t>> order;

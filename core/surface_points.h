@@ -15,10 +15,10 @@ struct SurfaceSample {
   float area_m2;       // that the point stands for
 };
 
-/// `count` points spread evenly by area over both sides of all triangles of a scene, the same ones every time: strata
-/// of equal area, Halton points in each triangle. In an order in which those that follow on each other face alike and
-/// lie near: by the axis that the normal is nearest to, then along Morton's curve. Fewer, where the scene has no area.
-/// Cost: one look at each triangle.
-std::vector<SurfaceSample> surface_points(const Scene& scene, int count);
+/// `count` points spread evenly by area over both sides of all triangles of a scene, the same ones every time for a
+/// `sample` of core/sample_sequence.h: strata of equal area, Halton points in each triangle. In an order in which those
+/// that follow on each other face alike and lie near: by the axis that the normal is nearest to, then along Morton's
+/// curve. Fewer, where the scene has no area. Cost: one look at each triangle.
+std::vector<SurfaceSample> surface_points(const Scene& scene, int count, int sample = 0);
 
 }  // namespace volgi

@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/gl/limits.h"
 #include "core/gl/objects.h"
+#include "core/gl/program_pool_internal.h"
 
 namespace volgi::gl {
 namespace {
@@ -123,6 +124,7 @@ struct State {
   std::string first_error;  // since the last throw
   std::map<std::pair<GLenum, std::optional<GLuint>>, GLint64> limits;
   GLuint empty_vertex_array = 0;  // ends with the context
+  ProgramPool programs;
 };
 thread_local State* current = nullptr;
 
@@ -131,9 +133,10 @@ State& current_state() {
   return *current;
 }
 
-void GLAPIENTRY on_debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
-                                 const void* user) {
+void GLAPIENTRY on_debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
+                                 const GLchar* text, const void* user) {
   if (severity != GL_DEBUG_SEVERITY_HIGH && type != GL_DEBUG_TYPE_ERROR) return;
+  if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;  // gl::Program says it, with the file's name
   State& state = *static_cast<State*>(const_cast<void*>(user));
   ++state.errors;
   const std::string_view message(text, length < 0 ? std::string_view(text).size() : size_t(length));
@@ -175,6 +178,8 @@ struct Context::Data {
   std::string version;
 
   bool open(EGLDisplay on_display, bool debug);
+  void take_current();
+  void check_limits() const;
   void close();
   void watch();
   ~Data() { close(); }
@@ -202,10 +207,14 @@ bool Context::Data::open(EGLDisplay on_display, bool debug) {
     if (state.surface == EGL_NO_SURFACE) return false;
   }
   if (eglMakeCurrent(on_display, state.surface, state.surface, state.context) == EGL_FALSE) return false;
+  take_current();
+  return true;
+}
+
+void Context::Data::take_current() {
   state.before = std::exchange(current, &state);
   name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   version = reinterpret_cast<const char*>(glGetString(GL_VERSION));
-  return true;
 }
 
 // The display itself stays initialised: EGL hands the same one to every context on the device, without counting.
@@ -215,15 +224,20 @@ void Context::Data::close() {
   }
   if (current == &state) {
     current = state.before;
-    if (current != nullptr) {
+    if (current != nullptr && current->context != EGL_NO_CONTEXT) {
       eglMakeCurrent(current->display, current->surface, current->surface, current->context);
-    } else {
+    } else if (state.context != EGL_NO_CONTEXT) {
       eglMakeCurrent(state.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     }
   }
   if (state.context != EGL_NO_CONTEXT) eglDestroyContext(state.display, state.context);
   if (state.surface != EGL_NO_SURFACE) eglDestroySurface(state.display, state.surface);
   state = {};
+}
+
+void Context::Data::check_limits() const {
+  const std::string shortage = first_shortage(needed_limits(), [](GLenum limit_name) { return limit(limit_name); });
+  if (!shortage.empty()) throw Error(ExitCode::no_device, name + ": " + shortage + "; try another --device");
 }
 
 void Context::Data::watch() {
@@ -294,9 +308,17 @@ Context::Context(const ContextOptions& options) : data_(std::make_unique<Data>()
                 "no OpenGL 4.5 core context through EGL; install a driver (on Debian libegl-mesa0 and libgl1-mesa-dri) "
                 "or use --backend cpu");
   }
-  const std::string shortage = first_shortage(needed_limits(), [](GLenum name) { return limit(name); });
-  if (!shortage.empty()) throw Error(ExitCode::no_device, data_->name + ": " + shortage + "; try another --device");
+  data_->check_limits();
   if (options.debug) data_->watch();
+}
+
+Context::Context(const OfWindow& window) : data_(std::make_unique<Data>()) {
+  data_->take_current();
+  constexpr int NEEDED = 45;
+  if (epoxy_gl_version() < NEEDED)
+    throw Error(ExitCode::no_device, data_->name + ": OpenGL " + data_->version + ", but 4.5 is needed");
+  data_->check_limits();
+  if (window.debug) data_->watch();
 }
 
 Context::~Context() = default;
@@ -339,6 +361,8 @@ GLuint empty_vertex_array() {
   }
   return state.empty_vertex_array;
 }
+
+ProgramPool* program_pool() { return current == nullptr ? nullptr : &current->programs; }
 
 GLint64 limit(GLenum name, std::optional<GLuint> index) {
   const auto [known, added] = current_state().limits.try_emplace({name, index}, 0);

@@ -10,6 +10,11 @@ struct ContextOptions {
   bool debug = false;              // GL says what is wrong where it is wrong; slower on some drivers
 };
 
+/// Says that a window toolkit has made a context current on this thread: volgi uses it.
+struct OfWindow {
+  bool debug = false;  // as ContextOptions::debug; the context has to be a debug one for messages to come
+};
+
 /// An OpenGL 4.5 core context without a window, current on the thread that made it, through EGL: device platform for
 /// hardware first, then Mesa's surfaceless platform, then a software device (llvmpipe). The context that was current
 /// before is current again when this one ends.
@@ -19,6 +24,9 @@ struct ContextOptions {
 class Context {
  public:
   explicit Context(const ContextOptions& options = {});
+  /// The toolkit's context, which stays its own: this neither makes nor ends it, and ends before it.
+  /// @throws Error(no_device) when it is older than OpenGL 4.5 or below the limits.
+  explicit Context(const OfWindow& window);
   ~Context();
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

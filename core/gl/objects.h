@@ -28,6 +28,12 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   GLuint id() const { return id_; }
   explicit operator bool() const { return id_ != 0; }
+  /// To an owner that ends it otherwise.
+  GLuint release() {
+    const GLuint id = id_;
+    id_ = 0;
+    return id;
+  }
 
  private:
   void reset() {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/gl/context.h"
@@ -195,6 +196,28 @@ std::vector<PassTimer::PassTime> PassTimer::medians() {
     result.push_back({d.names[pass], median(values[0]), median(values[1])});
   }
   return result;
+}
+
+std::vector<PassTimer::PassTime> PassTimer::latest() const {
+  const std::deque<Sample>& samples = data_->samples;
+  std::optional<std::uint64_t> under_way;
+  auto newest = samples.rbegin();
+  for (; newest != samples.rend(); ++newest) {
+    if (newest->queries[0] != 0) under_way = newest->frame;
+    if (newest->frame != under_way) break;
+  }
+  if (newest == samples.rend()) return {};
+  auto first = newest.base();
+  while (first != samples.begin() && std::prev(first)->frame == newest->frame) --first;
+  std::vector<PassTime> times;
+  for (auto s = first; s != newest.base(); ++s) {
+    const std::string& name = data_->names[s->pass];
+    const auto known = std::find_if(times.begin(), times.end(), [&](const PassTime& t) { return t.name == name; });
+    PassTime& time = known != times.end() ? *known : times.emplace_back(PassTime{name, 0.0, 0.0});
+    time.gpu_ms += s->gpu_ms;
+    time.cpu_ms += s->cpu_ms;
+  }
+  return times;
 }
 
 PassTimer::FrameTime PassTimer::frame_time() const {

@@ -41,6 +41,8 @@ class PassTimer {
   };
   /// Median of every pass over the frames so far, in order of first use. Waits for outstanding queries.
   std::vector<PassTime> medians();
+  /// The newest frame whose times are all known, in order of first use: of a GPU a few frames back. Does not wait.
+  std::vector<PassTime> latest() const;
   struct FrameTime {
     double min_ms, median_ms, max_ms;
   };

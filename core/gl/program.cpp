@@ -1,8 +1,8 @@
 #include "core/gl/program.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
+#include <functional>
 #include <glm/gtc/type_ptr.hpp>
 #include <limits>
 #include <span>
@@ -10,18 +10,15 @@
 
 #include "core/error.h"
 #include "core/gl/limits.h"
+#include "core/gl/program_pool_internal.h"
 #include "core/gl/shader_source.h"
 #include "shaders/shared/global_index.shared.h"
 
 namespace volgi::gl {
 namespace {
 
-struct Stage {
-  GLenum type;
-  std::string file;
-};
-
 void delete_shader(GLuint id) { glDeleteShader(id); }
+void delete_program(GLuint id) { glDeleteProgram(id); }
 using Shader = Handle<delete_shader>;
 
 template <class GetParameter, class GetLog>
@@ -40,55 +37,62 @@ std::string define_lines(const std::vector<std::string>& defines) {
   return text;
 }
 
-Shader compile(const Stage& stage, const std::string& defines) {
-  const std::string source = expand_shader(stage.file, defines);
-  Shader shader(glCreateShader(stage.type));
+Shader compile(GLenum type, const std::string& file, const std::string& source) {
+  Shader shader(glCreateShader(type));
   const char* text = source.c_str();
   glShaderSource(shader.id(), 1, &text, nullptr);
   glCompileShader(shader.id());
   GLint compiled = 0;
   glGetShaderiv(shader.id(), GL_COMPILE_STATUS, &compiled);
   if (compiled == 0) {
-    throw Error(ExitCode::no_device, "the driver refuses shader " + stage.file + ": " +
+    throw Error(ExitCode::no_device, "the driver refuses shader " + file + ": " +
                                          info_log(shader.id(), glGetShaderiv, glGetShaderInfoLog) +
                                          " (files: " + file_legend(source) + ")");
   }
   return shader;
 }
 
-GLuint link(std::span<const Stage> stages, const std::vector<std::string>& defines) {
-  const std::string define_text = define_lines(defines);
-  const GLuint program = glCreateProgram();
-  count_object();
-  std::vector<Shader> shaders;
-  try {
-    for (const Stage& stage : stages) {
-      shaders.push_back(compile(stage, define_text));
-      glAttachShader(program, shaders.back().id());
-    }
-    glLinkProgram(program);
-    GLint linked = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (linked == 0) {
-      throw Error(ExitCode::no_device, "the driver refuses to link " + stages.back().file + ": " +
-                                           info_log(program, glGetProgramiv, glGetProgramInfoLog));
-    }
-  } catch (...) {
-    glDeleteProgram(program);
-    throw;
-  }
+void link_shaders(GLuint program, std::span<const Shader> shaders, const std::string& name) {
+  for (const Shader& shader : shaders) glAttachShader(program, shader.id());
+  glLinkProgram(program);
   for (const Shader& shader : shaders) glDetachShader(program, shader.id());
-  glObjectLabel(GL_PROGRAM, program, -1, stages.back().file.c_str());
-  return program;
+  GLint linked = 0;
+  glGetProgramiv(program, GL_LINK_STATUS, &linked);
+  if (linked == 0) {
+    throw Error(ExitCode::no_device,
+                "the driver refuses to link " + name + ": " + info_log(program, glGetProgramiv, glGetProgramInfoLog));
+  }
+  glObjectLabel(GL_PROGRAM, program, -1, name.c_str());
 }
 
 }  // namespace
 
-Program Program::compute(std::string_view file, const std::vector<std::string>& defines) {
-  const std::array stages{Stage{GL_COMPUTE_SHADER, std::string(file)}};
+struct Program::Stage {
+  GLenum type;
+  std::string file;
+};
+
+Program Program::link(const std::vector<Stage>& stages, const std::vector<std::string>& defines) {
+  const std::string define_text = define_lines(defines);
+  std::vector<std::string> sources;
+  std::string all;
+  for (const Stage& stage : stages) all += sources.emplace_back(expand_shader(stage.file, define_text));
   Program program;
-  program.id_ = link(stages, defines);
+  program.pool_key_ = stages.back().file + '\n' + define_text + std::to_string(std::hash<std::string>()(all));
+  ProgramPool* pool = program_pool();
+  program.id_ = pool != nullptr ? pool->take(program.pool_key_) : 0;
+  if (program.id_ != 0) return program;
+  std::vector<Shader> shaders;
+  for (size_t k = 0; k < stages.size(); ++k) shaders.push_back(compile(stages[k].type, stages[k].file, sources[k]));
+  Handle<delete_program> linked(glCreateProgram());
+  count_object();
+  link_shaders(linked.id(), shaders, stages.back().file);
+  program.id_ = linked.release();
   return program;
+}
+
+Program Program::compute(std::string_view file, const std::vector<std::string>& defines) {
+  return link({{GL_COMPUTE_SHADER, std::string(file)}}, defines);
 }
 
 Program Program::raster(std::string_view base, const std::vector<std::string>& defines) {
@@ -96,29 +100,28 @@ Program Program::raster(std::string_view base, const std::vector<std::string>& d
   std::vector<Stage> stages{{GL_VERTEX_SHADER, name + ".vert.glsl"}};
   if (has_shader_file(name + ".geom.glsl")) stages.push_back({GL_GEOMETRY_SHADER, name + ".geom.glsl"});
   stages.push_back({GL_FRAGMENT_SHADER, name + ".frag.glsl"});
-  Program program;
-  program.id_ = link(stages, defines);
-  return program;
+  return link(stages, defines);
 }
 
 Program Program::raster(std::string_view vertex_file, std::string_view fragment_file,
                         const std::vector<std::string>& defines) {
-  const std::array stages{Stage{GL_VERTEX_SHADER, std::string(vertex_file)},
-                          Stage{GL_FRAGMENT_SHADER, std::string(fragment_file)}};
-  Program program;
-  program.id_ = link(stages, defines);
-  return program;
+  return link({{GL_VERTEX_SHADER, std::string(vertex_file)}, {GL_FRAGMENT_SHADER, std::string(fragment_file)}},
+              defines);
 }
 
 Program::~Program() {
-  if (id_ != 0) glDeleteProgram(id_);
+  if (id_ == 0) return;
+  if (ProgramPool* pool = program_pool()) pool->give_back(pool_key_, id_);
 }
 
 Program::Program(Program&& other) noexcept
-    : id_(std::exchange(other.id_, 0)), locations_(std::move(other.locations_)) {}
+    : id_(std::exchange(other.id_, 0)),
+      pool_key_(std::move(other.pool_key_)),
+      locations_(std::move(other.locations_)) {}
 
 Program& Program::operator=(Program&& other) noexcept {
   std::swap(id_, other.id_);
+  std::swap(pool_key_, other.pool_key_);
   std::swap(locations_, other.locations_);
   return *this;
 }

@@ -11,8 +11,9 @@
 
 namespace volgi::gl {
 
-/// A linked program from files under shaders/ (embedded in the library at build time, so that nothing is looked up at
-/// run time). `#include "shared/x.shared.h"` is expanded with #line; `defines` become "#define A B" after #version.
+/// A linked program from files under shaders/ (embedded in the library at build time; core/gl/shader_source.h has the
+/// exception). One that was made before in this context from the same text, and is no longer used, is taken again.
+/// `#include "shared/x.shared.h"` is expanded with #line; `defines` become "#define A B" after #version.
 /// @throws Error(no_device) with the compiler's message and the shader's name when the driver refuses it.
 class Program {
  public:
@@ -43,8 +44,11 @@ class Program {
   void set(const char* name, const glm::mat4& v) const;
 
  private:
+  struct Stage;
+  static Program link(const std::vector<Stage>& stages, const std::vector<std::string>& defines);
   GLint location(const char* name) const;
   GLuint id_ = 0;
+  std::string pool_key_;
   mutable std::unordered_map<std::string, GLint> locations_;
 };
 

@@ -36,6 +36,12 @@ void Readback::push(const Buffer& from, size_t offset) {
   next_ = (next_ + 1) % slots_;
 }
 
+bool Readback::ready() const {
+  if (waiting_.empty()) return false;
+  const GLenum status = glClientWaitSync(waiting_.front().fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
+  return status == GL_ALREADY_SIGNALED || status == GL_CONDITION_SATISFIED;
+}
+
 void Readback::pop(void* out) {
   assert(!waiting_.empty());
   Waiting w = waiting_.front();

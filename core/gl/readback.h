@@ -23,6 +23,7 @@ class Readback {
 
   void push(const Buffer& from, size_t offset = 0);
   size_t pending() const { return waiting_.size(); }
+  bool ready() const;   // pop() would not wait
   void pop(void* out);  // @throws Error(no_device) as wait_for
   void drop_all();
 

@@ -23,13 +23,16 @@ class SceneBuffers {
   /// Cost: writes and uploads 216 bytes a triangle.
   void set_geometry(const Scene& scene);
 
+  /// Materials of the same textures and alpha modes with other factors, such as what they emit.
+  void set_materials(const std::vector<Material>& materials) { materials_ = materials; }
+
   /// Draws everything with `program`, which must include shared/material.glsl: per material it sets the material
   /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive), 3 (normal). Skips meshes without
   /// triangles.
   void draw(const Program& program) const;
 
-  /// Of n pictures that are one when they are averaged, the k-th: k / n. What BLEND covers by chance is then covered in
-  /// its share of them.
+  /// Of pictures that are averaged each has another one, evenly spread over [0, 1): what BLEND covers by chance is then
+  /// covered in its share of them.
   void set_sample(float sample) { sample_ = sample; }
 
   /// Triangles [first, first + count) of the vertex buffer.

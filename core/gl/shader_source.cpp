@@ -1,6 +1,8 @@
 #include "core/gl/shader_source.h"
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "core/error.h"
@@ -10,10 +12,24 @@ namespace {
 
 constexpr std::string_view legend_mark = "//file ";
 
+std::filesystem::path& shader_folder() {
+  static std::filesystem::path folder;
+  return folder;
+}
+
 const ShaderFile* find_file(std::string_view name) {
   const auto files = shader_files();
   const auto it = std::find_if(files.begin(), files.end(), [&](const ShaderFile& f) { return f.name == name; });
   return it == files.end() ? nullptr : &*it;
+}
+
+/// The folder's text where it has such a file.
+std::string text_of(const ShaderFile& file) {
+  if (!shader_folder().empty()) {
+    std::ifstream in(shader_folder() / file.name, std::ios::binary);
+    if (in) return {std::istreambuf_iterator<char>(in), {}};
+  }
+  return std::string(file.text);
 }
 
 std::string_view take_line(std::string_view& text) {
@@ -52,7 +68,8 @@ class Expansion {
     }
     const size_t number = done_.size();
     done_.push_back(name);
-    std::string_view rest = file->text;
+    const std::string text = text_of(*file);
+    std::string_view rest = text;
     if (includer.empty()) {
       out_ += std::string(take_line(rest)) + '\n' + std::string(after_version_);
     }
@@ -84,6 +101,23 @@ class Expansion {
 }  // namespace
 
 bool has_shader_file(std::string_view name) { return find_file(name) != nullptr; }
+
+void set_shader_folder(const std::filesystem::path& folder) {
+  if (!folder.empty() && !std::filesystem::is_directory(folder))
+    throw Error(ExitCode::usage, "--shaders " + folder.string() + ": no such folder");
+  shader_folder() = folder;
+}
+
+std::filesystem::file_time_type last_shader_change() {
+  if (shader_folder().empty()) return {};
+  auto last = std::filesystem::file_time_type::min();  // the epoch may be to come: GCC's is in 2174
+  for (const ShaderFile& file : shader_files()) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(shader_folder() / file.name, error);
+    if (!error) last = std::max(last, time);
+  }
+  return last;
+}
 
 std::string expand_shader(std::string_view name, std::string_view after_version) {
   return Expansion(after_version).run(name);

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,13 @@ struct ShaderFile {
 };
 std::span<const ShaderFile> shader_files();
 bool has_shader_file(std::string_view name);
+
+/// From here on, files below this folder are read in place of embedded ones of the same name, each time anew; what is
+/// not there is taken as embedded. Empty: all as embedded. For work on shaders (volgi-demo --shaders).
+/// @throws Error(usage) when it is no folder.
+void set_shader_folder(const std::filesystem::path& folder);
+/// Of its files, the last change; its epoch where none is set.
+std::filesystem::file_time_type last_shader_change();
 
 /// The text of an embedded shader file: `#include "..."` expanded, each file once; #line gives file numbers, which
 /// comments "//file NUMBER NAME" explain.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <memory>
 
 #include "core/error.h"
 #include "core/luminance.h"
@@ -73,6 +74,45 @@ TEST(Sky, LightsLightAPlaneAsTheSkyDoes) {
       irradiance += double(std::max(-glm::dot(l.direction, normal), 0.0f) * l.irradiance.x);
     EXPECT_NEAR(irradiance, glm::pi<double>(), 0.005 * glm::pi<double>());
   }
+}
+
+/// What a plane receives of the sky, by every texel.
+double irradiance_of(const Sky& sky, glm::vec3 normal) {
+  const Image& image = sky.image();
+  double sum = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    const double solid_angle =
+        2.0 * glm::pi<double>() / image.width *
+        (std::cos(glm::pi<double>() * y / image.height) - std::cos(glm::pi<double>() * (y + 1) / image.height));
+    for (int x = 0; x < image.width; ++x) {
+      const double cosine = double(std::max(glm::dot(sky.direction_at(x + 0.5, y + 0.5), normal), 0.0f));
+      sum += cosine * solid_angle * double(image.at(x, y).y);
+    }
+  }
+  return sum;
+}
+
+// Few parts, so that a picture alone errs; means do not. Parts keep their light, and picture 0 is sky_lights().
+TEST(Sky, MeansOfPartsLightAPlaneAsTheSkyDoes) {
+  const auto sky = std::make_shared<const Sky>(clear_sky(glm::radians(20.0), 1.0, 3.0));
+  const SkyParts parts(sky, 32);
+  const auto first = sky_lights(*sky, 32);
+  const glm::vec3 normals[] = {{0, 1, 0}, {1, 0, 0}, glm::normalize(glm::vec3(1, 2, -3))};
+  double mean[3] = {};
+  constexpr int kPictures = 64;
+  for (int k = 0; k < kPictures; ++k) {
+    const auto lights = parts.lights(k);
+    ASSERT_EQ(lights.size(), first.size());
+    for (size_t i = 0; i < lights.size(); ++i) {
+      EXPECT_EQ(lights[i].irradiance, first[i].irradiance);
+      EXPECT_NEAR(glm::length(lights[i].direction), 1.0f, 1e-5f);
+      EXPECT_TRUE(k > 0 || lights[i].direction == first[i].direction);
+      for (int n = 0; n < 3; ++n)
+        mean[n] +=
+            double(std::max(-glm::dot(lights[i].direction, normals[n]), 0.0f) * lights[i].irradiance.y) / kPictures;
+    }
+  }
+  for (int n = 0; n < 3; ++n) EXPECT_NEAR(mean[n] / irradiance_of(*sky, normals[n]), 1.0, 0.01) << n;
 }
 
 TEST(Sky, ClearSkyIsDaylight) {
