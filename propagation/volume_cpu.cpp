@@ -153,7 +153,7 @@ const CellVolumes& VolumeCpu::cells() {
   return cells_;
 }
 
-RadianceVolume VolumeCpu::radiance() {
+RadianceVolume VolumeCpu::radiance() const {
   if (bounces_) bounces_->transport().stream_in(streaming_sky(scene_, options_));
   RadianceVolume volume = pulse_ ? pulse_->radiance() : bounces_->transport().radiance(bounces_->sent(voxels_, flux_));
   if (bounces_) bounces_->transport().stream_in(nullptr);

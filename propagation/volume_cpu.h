@@ -42,7 +42,7 @@ class VolumeCpu {
   const BounceReport& report() const { return report_; }
   size_t pocket_cells() const { return pocket_cells_; }  // bound_white_pockets()
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
-  RadianceVolume radiance();
+  RadianceVolume radiance() const;
   /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
   bool has_coarse_part() const;
   size_t bytes() const;

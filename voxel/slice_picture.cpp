@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "shaders/shared/color_maps.shared.h"
 
 namespace volgi {
 namespace {
@@ -217,20 +218,7 @@ void draw_bar(Image& image, int left, int right, int top, const ColorScale& colo
 
 }  // namespace
 
-glm::vec3 viridis(float t) {
-  // Fit of the map of Smith and van der Walt (matplotlib, CC0) by M. Zucker, shadertoy.com/view/WlfXRN (CC0).
-  constexpr std::array<glm::vec3, 7> c{{{0.2777273272f, 0.0054073445f, 0.3340998053f},
-                                        {0.1050930431f, 1.4046135299f, 1.3845901626f},
-                                        {-0.3308618287f, 0.2148475595f, 0.0950951630f},
-                                        {-4.6342304990f, -5.7991009734f, -19.3324409563f},
-                                        {6.2282699363f, 14.1799333668f, 56.6905526007f},
-                                        {4.7763849977f, -13.7451453777f, -65.3530326334f},
-                                        {-5.4354558559f, 4.6458526122f, 26.3124352496f}}};
-  const float x = std::clamp(t, 0.0f, 1.0f);
-  glm::vec3 color(0.0f);
-  for (size_t i = c.size(); i-- > 0;) color = color * x + c[i];
-  return glm::clamp(color, 0.0f, 1.0f);
-}
+glm::vec3 viridis(float t) { return shared::viridis(t); }
 
 glm::vec3 diverging(float s) {
   // ColorBrewer's RdBu of 11 classes (C. Brewer, colorbrewer2.org, Apache 2.0), from negative blue to positive red.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "core/octahedral.h"
@@ -60,11 +61,15 @@ struct Box {
 class Gather {
  public:
   Gather(const EmbreeScene& embree, const VirtualLightsForSides& from, size_t first, size_t end, int stride)
-      : embree_(embree), zone_(from.sublights.empty() ? 0.0f : from.near_zone), stride_(size_t(stride)) {
+      : embree_(embree),
+        zone_(from.sublights.empty() ? 0.0f : from.near_zone),
+        apart_(from.sample > 0),
+        stride_(size_t(stride)) {
     for (size_t k = first; k < end; ++k) {
       lights_.push_back(disk_of(from.lights[k]));
       light_ends_.push_back(end_of(lights_.back()));
       if (from.sublights.empty()) continue;
+      reaches_.push_back(reach_of(from, k));
       for (size_t p = 0; p < SUBLIGHTS_PER_LIGHT; ++p) {
         sublights_.push_back(disk_of(from.sublights[k * SUBLIGHTS_PER_LIGHT + p]));
         if (p < COARSE_SUBLIGHTS) coarse_ends_.push_back(end_of(sublights_.back()));
@@ -77,8 +82,7 @@ class Gather {
     std::vector<std::uint32_t> near;
     for (size_t k = 0; k < lights_.size() && !sublights_.empty(); ++k) {
       const glm::vec3 d = glm::clamp(lights_[k].position, box.least, box.most) - lights_[k].position;
-      // far_share() is 1 from there on.
-      if (glm::dot(d, d) < 2.0f * zone_ * lights_[k].area_m2) near.push_back(std::uint32_t(k));
+      if (glm::dot(d, d) < reaches_[k] * reaches_[k]) near.push_back(std::uint32_t(k));
     }
     return near;
   }
@@ -101,16 +105,25 @@ class Gather {
   /// Of a light's sub-lights, by the share that it does not have itself: its coarse ones, and nearer by half the fine
   /// ones of those, as near_lights.comp.glsl has it. A ray for each coarse one.
   glm::vec3 from_sublights(const Side& side, const SideStart& start, size_t light, std::uint32_t seed) const {
-    const float near = 1.0f - far_share_at(start.position, lights_[light], zone_);
+    const float near = apart_ ? 1.0f : 1.0f - far_share_at(start.position, lights_[light], zone_);
     if (near <= 0.0f) return glm::vec3(0.0f);
+    const auto own_share = [&](const Disk& sublight) {
+      Disk as_light = sublight;
+      as_light.area_m2 = lights_[light].area_m2;
+      return apart_ ? 1.0f - far_share_at(start.position, as_light, zone_) : 1.0f;
+    };
     const Disk* sublights = &sublights_[light * SUBLIGHTS_PER_LIGHT];
     glm::vec3 sum(0.0f);
     for (size_t coarse = 0; coarse < COARSE_SUBLIGHTS; ++coarse) {
       const float far = far_share_at(start.position, sublights[coarse], zone_);
       glm::vec3 own(0.0f);
-      if (far > 0.0f) own += far * irradiance_of(side, start, sublights[coarse]);
-      for (size_t k = 0; k < FINE_PER_COARSE && far < 1.0f; ++k)
-        own += (1.0f - far) * irradiance_of(side, start, sublights[COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE + k]);
+      const float coarse_share = far > 0.0f ? far * own_share(sublights[coarse]) : 0.0f;
+      if (coarse_share > 0.0f) own += coarse_share * irradiance_of(side, start, sublights[coarse]);
+      for (size_t k = 0; k < FINE_PER_COARSE && far < 1.0f; ++k) {
+        const Disk& fine = sublights[COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE + k];
+        const float fine_share = (1.0f - far) * own_share(fine);
+        if (fine_share > 0.0f) own += fine_share * irradiance_of(side, start, fine);
+      }
       if (own == glm::vec3(0.0f)) continue;
       const glm::vec3 end = coarse_ends_[light * COARSE_SUBLIGHTS + coarse];
       if (!hidden(start, end, seed + std::uint32_t(light))) sum += own;
@@ -119,6 +132,17 @@ class Gather {
   }
 
  private:
+  /// Farther away far_share() is 1, of the light or of all that it consists of.
+  float reach_of(const VirtualLightsForSides& from, size_t light) const {
+    const VirtualLight& whole = from.lights[light];
+    float squared = 0.0f;
+    for (size_t p = 0; p < SUBLIGHTS_PER_LIGHT && apart_; ++p) {
+      const shared::SubLight& part = from.sublights[light * SUBLIGHTS_PER_LIGHT + p];
+      const glm::vec3 d = part.position - whole.position;
+      if (part.flux != glm::vec3(0.0f)) squared = std::max(squared, glm::dot(d, d));
+    }
+    return std::sqrt(2.0f * zone_ * whole.area_m2) + std::sqrt(squared);
+  }
   /// Of rays to a light: beside its surface.
   glm::vec3 end_of(const Disk& light) const { return embree_.leaving_point(light.position, -light.normal, FAR); }
   bool hidden(const SideStart& start, glm::vec3 end, std::uint32_t seed) const {
@@ -129,8 +153,10 @@ class Gather {
 
   const EmbreeScene& embree_;
   float zone_;
+  bool apart_;
   size_t stride_;
   std::vector<Disk> lights_, sublights_;
+  std::vector<float> reaches_;  // of sub-lights [m]
   std::vector<glm::vec3> light_ends_, coarse_ends_;
 };
 
@@ -159,8 +185,8 @@ std::vector<glm::vec4> side_gather(const VoxelGrid& voxels, const EmbreeScene& e
     for (size_t i = begin; i < past; ++i) {
       const Side& side = voxels.sides()[i];
       const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
-      const std::uint32_t seed = std::uint32_t(i) * 2654435769u;
-      const auto offset = size_t(first_light_of_side(cell, side.face, stride));
+      const std::uint32_t seed = std::uint32_t(i) * 2654435769u + std::uint32_t(from.sample) * 2246822519u;
+      const auto offset = size_t(first_light_of_side(cell, side.face, stride, from.sample));
       glm::vec3 sum = gather.from_lights(side, starts[i - begin], offset, seed);
       for (const std::uint32_t k : near) sum += gather.from_sublights(side, starts[i - begin], k, seed);
       irradiance[i] = glm::vec4(sum, 0.0f);

@@ -15,10 +15,11 @@ namespace volgi {
 /// Which of every `stride` virtual lights a side takes: 0 ... stride - 1. An additive recurrence over the cells
 /// (Roberts 2018: powers of 1/1.2207..., in units of 2^-32) and the faces, so that sides beside each other take
 /// different lights and their mean knows most of them, whatever order sides are in.
-inline int first_light_of_side(glm::ivec3 cell, int face, int stride) {
+/// @param sample  of pictures that are averaged (core/sample_sequence.h): in `stride` of them a side takes each once.
+inline int first_light_of_side(glm::ivec3 cell, int face, int stride, int sample = 0) {
   const std::uint32_t place = 3518319155u * std::uint32_t(cell.x) + 2882110345u * std::uint32_t(cell.y) +
                               2360945575u * std::uint32_t(cell.z) + 2654435769u * std::uint32_t(face);
-  return int((std::uint64_t(place) * std::uint64_t(stride)) >> 32);
+  return int(((std::uint64_t(place) * std::uint64_t(stride) >> 32) + std::uint64_t(sample)) % std::uint64_t(stride));
 }
 
 /// The stride that keeps rays within a budget: what 1024 lights in strides of 16 cost 8192 sides, as cornell has in 32
@@ -32,6 +33,7 @@ struct VirtualLightsForSides {
   /// Parts of each light, SUBLIGHTS_PER_LIGHT of them, that light what is near it; none: the lights do that themselves.
   std::vector<shared::SubLight> sublights;
   float near_zone = 0.0f;  // areas of a light (shared::far_share)
+  int sample = 0;          // that they are of (core/sample_sequence.h)
 };
 
 /// Irradiance of every side from virtual lights [W m^-2], w = 0: the sum of Phi times shared::disk_to_point over those

@@ -13,16 +13,16 @@ namespace volgi {
 namespace {
 
 glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size_t s, std::span<const SkyLight> parts,
-                        int stride) {
+                        int stride, int sample) {
   const shared::Side& side = voxels.sides()[s];
   const SideStart start = start_of_side(voxels, embree, side);
   const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
   glm::vec3 sum(0.0f);
-  for (size_t k = size_t(first_light_of_side(cell, side.face, stride)); k < parts.size(); k += size_t(stride)) {
+  for (size_t k = size_t(first_light_of_side(cell, side.face, stride, sample)); k < parts.size(); k += size_t(stride)) {
     const glm::vec3 towards = -parts[k].direction;
     const float cosine = glm::dot(towards, side.normal);
     if (cosine <= 0.0f) continue;
-    const std::uint32_t seed = std::uint32_t(s) * 2654435769u + std::uint32_t(k);
+    const std::uint32_t seed = std::uint32_t(s) * 2654435769u + std::uint32_t(sample) * 2246822519u + std::uint32_t(k);
     if (embree.occluded({start.origin, towards, std::numeric_limits<float>::infinity(), seed, start.from, {}}))
       continue;
     sum += cosine * parts[k].irradiance;
@@ -33,17 +33,18 @@ glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size
 }  // namespace
 
 const std::vector<glm::vec4>& SideSkyCpu::irradiance(const VoxelGrid& voxels, const EmbreeScene& embree,
-                                                     std::span<const SkyLight> parts, int version) {
+                                                     std::span<const SkyLight> parts, int version, int sample) {
   const size_t count = voxels.side_count();
-  const bool same = version == version_ && count == sides_.size() &&
+  const bool same = version == version_ && sample == sample_ && count == sides_.size() &&
                     std::memcmp(sides_.data(), voxels.sides().data(), count * sizeof(shared::Side)) == 0;
   if (same) return irradiance_;
   version_ = version;
+  sample_ = sample;
   sides_.assign(voxels.sides().begin(), voxels.sides().end());
   irradiance_.resize(count);
   const int stride = std::max(int(parts.size()) / kRays, 1);
   tbb::parallel_for(size_t(0), count, [&](size_t s) {
-    irradiance_[s] = glm::vec4(irradiance_of(voxels, embree, s, parts, stride), 0.0f);
+    irradiance_[s] = glm::vec4(irradiance_of(voxels, embree, s, parts, stride, sample), 0.0f);
   });
   return irradiance_;
 }

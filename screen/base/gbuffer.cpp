@@ -79,4 +79,15 @@ void GBuffer::bind_shine() const {
   mirror_.bind(GBUFFER_MIRROR_UNIT);
 }
 
+void GBuffer::list_textures(std::vector<NamedTexture>& list) const {
+  list_texture(list, name, "depth", depth_);
+  list_texture(list, name, "position", position_);
+  list_texture(list, name, "normals", normals_);
+  list_texture(list, name, "albedo", albedo_);
+  list_texture(list, name, "diffuse reflectance", diffuse_);
+  list_texture(list, name, "mirror reflectance", mirror_);
+  list_texture(list, name, "emission", emission_);
+  list_texture(list, name, "object id", object_id_);
+}
+
 }  // namespace volgi::screen

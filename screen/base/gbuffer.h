@@ -1,11 +1,13 @@
 #pragma once
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "core/gl/scene_buffers.h"
+#include "screen/base/named_texture.h"
 
 namespace volgi::screen {
 
@@ -38,9 +40,10 @@ class GBuffer {
      // normal, both on the viewer's side of the triangle
   // RGBA16, linear: of even light, what goes to the viewer
   const gl::Texture& albedo() const { return albedo_; }
-  const gl::Texture& diffuse() const { return diffuse_; }      // RGBA16: shared::Reflectance, and perceptual roughness
-  const gl::Texture& mirror() const { return mirror_; }        // RGBA16: reflectance from in front, at grazing angles
-  const gl::Texture& emission() const { return emission_; }    // RGBA32F, radiance towards the viewer
+  const gl::Texture& diffuse() const { return diffuse_; }    // RGBA16: shared::Reflectance, and perceptual roughness
+  const gl::Texture& mirror() const { return mirror_; }      // RGBA16: reflectance from in front, at grazing angles
+  const gl::Texture& emission() const { return emission_; }  // RGBA32F, radiance towards the viewer
+  void list_textures(std::vector<NamedTexture>& list) const;
   const gl::Texture& object_id() const { return object_id_; }  // R32UI, Mesh::object_id; 0 in the background
 
  private:

@@ -84,4 +84,13 @@ size_t ReflectiveShadowMap::bytes() const {
   return sum;
 }
 
+void ReflectiveShadowMap::list_textures(std::vector<NamedTexture>& list) const {
+  for (size_t light = 0; light < maps_.size(); ++light) {
+    const std::string of_light = std::string(name) + " light " + std::to_string(light);
+    list_texture(list, of_light, "depth", maps_[light].depth);
+    list_texture(list, of_light, "normals", maps_[light].normal);
+    list_texture(list, of_light, "albedo", maps_[light].albedo);
+  }
+}
+
 }  // namespace volgi::screen

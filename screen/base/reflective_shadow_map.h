@@ -10,6 +10,7 @@
 #include "core/gl/scene_buffers.h"
 #include "core/light_layers.h"
 #include "core/scene.h"
+#include "screen/base/named_texture.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
 namespace volgi::screen {
@@ -40,6 +41,7 @@ class ReflectiveShadowMap {
   /// The data of all lights, and the textures of `light` (shaders/shared/reflective_shadow_map.shared.h).
   void bind(int light) const;
   size_t bytes() const;  // GPU memory
+  void list_textures(std::vector<NamedTexture>& list) const;
 
   const gl::Texture& depth(int light) const { return maps_[size_t(light)].depth; }    // D32F, 0 in the background
   const gl::Texture& normal(int light) const { return maps_[size_t(light)].normal; }  // normal_format, octahedral

@@ -54,7 +54,7 @@ AreaLightGather::AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& 
 
 void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
                           const VirtualAreaLights& area_lights, const ParaboloidDepthMaps& maps,
-                          const AreaLightShadow& shadow, float scene_diagonal_m, gl::PassTimer& timer) {
+                          const AreaLightShadow& shadow, float scene_diagonal_m, gl::PassTimer& timer, int sample) {
   with_direct_ = lights.emitted > 0;
   {
     const auto scope = timer.scope(arrange_name);
@@ -71,7 +71,7 @@ void AreaLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& ligh
   {
     const auto scope = timer.scope(name);
     set_up(gather_);
-    gather_interleaved();
+    gather_interleaved(sample);
   }
   if (options_.interleave == 1) return;
   {
@@ -121,7 +121,7 @@ void AreaLightGather::gather(const gl::Program& program, Range lights, const Dis
   } while (first < lights.end);
 }
 
-void AreaLightGather::gather_interleaved() {
+void AreaLightGather::gather_interleaved(int sample) {
   const int n = options_.interleave;
   (n > 1 ? indirect_irradiance_ : indirect_).bind_image(INDIRECT_IMAGE, GL_READ_WRITE);
   (n > 1 ? direct_irradiance_ : direct_).bind_image(DIRECT_IMAGE, GL_READ_WRITE);
@@ -129,7 +129,7 @@ void AreaLightGather::gather_interleaved() {
   gather_.use();
   const auto first_of = [&](int subset) { return int(int64_t(subset) * light_count_ / (n * n)); };
   for (int subset = 0; subset < n * n; ++subset) {
-    gather_.set("offset", place_in_block(subset, n));
+    gather_.set("offset", place_in_block((subset + sample) % (n * n), n));
     gather(gather_, {first_of(subset), first_of(subset + 1)}, [&] {
       gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
     });

@@ -5,6 +5,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/named_texture.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/gather/interleaved/geometry_blur.h"
 #include "screen/gather/interleaved/worst_pixels.h"
@@ -44,20 +45,28 @@ class AreaLightGather {
   /// @throws Error as check().
   AreaLightGather(glm::ivec2 size, const AreaLightGatherOptions& options, const AreaLightShadow& shadow);
 
+  /// @param sample  FrameData::sample: every pixel of a block takes the next subset, in n^2 of them each.
   void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualAreaLights& area_lights,
-           const ParaboloidDepthMaps& maps, const AreaLightShadow& shadow, float scene_diagonal_m,
-           gl::PassTimer& timer);
+           const ParaboloidDepthMaps& maps, const AreaLightShadow& shadow, float scene_diagonal_m, gl::PassTimer& timer,
+           int sample = 0);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F: the first reflection of punctual light
   size_t bytes() const;
+  void list_textures(std::vector<NamedTexture>& list) const {
+    list_texture(list, name, "direct irradiance", direct_irradiance_);
+    list_texture(list, name, "indirect irradiance", indirect_irradiance_);
+    if (blur_) list_texture(list, blur_name, "error estimate", blur_->error_estimate());
+    list_texture(list, exact_name, "direct", direct_);
+    list_texture(list, exact_name, "indirect", indirect_);
+  }
 
  private:
   struct Range {
     int first, end;  // of the lights in the order of their clusters
   };
   void arrange(const VirtualLightListGl& lights, const VirtualAreaLights& area_lights);
-  void gather_interleaved();
+  void gather_interleaved(int sample);
   void gather_listed();
   template <class Dispatch>
   void gather(const gl::Program& program, Range lights, const Dispatch& dispatch);

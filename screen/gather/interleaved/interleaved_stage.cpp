@@ -54,12 +54,16 @@ class InterleavedStage : public Stage {
     if (!gather_) gather_.emplace(size_, options_, clusters.shadow);
     if (near_) near_->run(frame.gbuffer, lights, frame.get<VirtualLightSubdivision>(), timer);
     gather_->run(frame.gbuffer, lights, clusters.area_lights, clusters.maps, clusters.shadow, frame.scene_diagonal_m,
-                 timer);
+                 timer, frame.sample);
     add_layers(*gather_, near_ ? LightShare::far : LightShare::whole, lights, frame);
     if (near_) add_layers(*near_, LightShare::near, lights, frame);
   }
   void report(FrameReport& report) const override {
     report.memory_bytes += (gather_ ? gather_->bytes() : 0) + (near_ ? near_->bytes() : 0);
+  }
+  void list_textures(std::vector<NamedTexture>& list) const override {
+    if (near_) near_->list_textures(list);
+    if (gather_) gather_->list_textures(list);
   }
 
  private:

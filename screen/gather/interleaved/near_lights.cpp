@@ -53,6 +53,7 @@ void NearLights::find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& li
     program.set("tiles", small);
     program.set("words", int(words));
     program.set("zone", zone_);
+    program.set("apart", subdivision.apart() ? 1 : 0);
     program.set("light_count", lights.count());
     program.use();
     gl::dispatch_linear(threads, LINEAR_GROUP);
@@ -72,6 +73,7 @@ void NearLights::run(const GBuffer& gbuffer, const VirtualLightListGl& lights,
   gather_.set("tiles", tiles_of(size_, NEAR_TILE));
   gather_.set("words", (lights.count() + 31) / 32);
   gather_.set("zone", zone_);
+  gather_.set("apart", subdivision.apart() ? 1 : 0);
   gather_.set("first_emitted", lights.reflected);
   gather_.set("with_direct", lights.emitted > 0 ? 1 : 0);
   subdivision.near_lights().bind_storage(NEAR_LIGHTS_SLOT);

@@ -3,6 +3,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/named_texture.h"
 #include "screen/base/work_list.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
 
@@ -29,6 +30,10 @@ class NearLights {
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F: the first reflection of punctual light
   size_t bytes() const;
+  void list_textures(std::vector<NamedTexture>& list) const {
+    list_texture(list, name, "direct", direct_);
+    list_texture(list, name, "indirect", indirect_);
+  }
 
  private:
   void find_tiles(const GBuffer& gbuffer, const VirtualLightListGl& lights, const VirtualLightSubdivision& subdivision,

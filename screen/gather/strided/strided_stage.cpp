@@ -56,6 +56,7 @@ class StridedStage : public Stage {
     report.add("coarse_share", share, fmt::format("{:.1f} % of the pixels from coarse ones", 100.0 * share));
     report.memory_bytes += gather_.bytes();
   }
+  void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
 
  private:
   VirtualLightGather gather_;

@@ -6,6 +6,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/named_texture.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/base/work_list.h"
 #include "screen/visibility/negative/negative_lights.h"
@@ -42,6 +43,12 @@ class VirtualLightGather {
   /// Share of the pixels that was not gathered again at full resolution; 0 with stride 1. Waits for the GPU.
   float coarse_share() const;
   size_t bytes() const;
+  void list_textures(std::vector<NamedTexture>& list) const {
+    list_texture(list, name, "direct", direct_);
+    list_texture(list, name, "indirect", indirect_);
+    list_texture(list, name, "coarse direct", coarse_direct_);
+    list_texture(list, name, "coarse indirect", coarse_indirect_);
+  }
 
  private:
   enum class Points { grid, list };

@@ -41,10 +41,10 @@ class ResampledLights : public Stage {
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& candidates = frame.get<VirtualLights>();
-    choose_.run(candidates.list(), frame.gbuffer, timer);
+    choose_.run(candidates.list(), frame.gbuffer, timer, frame.sample);
     frame.lend(choose_.lights());
     if (!parts_) return;
-    parts_->run(frame.shadow_maps, candidates, choose_, timer);
+    parts_->run(frame.shadow_maps, candidates, choose_, timer, frame.sample);
     frame.lend(*parts_);
   }
   void report(FrameReport& report) const override {

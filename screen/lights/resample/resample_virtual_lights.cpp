@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/sample_sequence.h"
 #include "shaders/screen/lights/resample/resample.shared.h"
 #include "shaders/screen/lights/resample/slots.shared.h"
 #include "shaders/shared/group_sizes.shared.h"
@@ -30,7 +31,8 @@ void ResampleVirtualLights::make_room(const VirtualLightListGl& candidates) {
   gl::reserve(weights_, size_t(std::max(candidates.count(), 1)) * 2 * sizeof(float));
 }
 
-void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer) {
+void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer,
+                                int sample) {
   const auto scope = timer.scope(name);
   make_room(candidates);
   candidates.buffer.bind_storage(CANDIDATES_SLOT);
@@ -39,6 +41,8 @@ void ResampleVirtualLights::run(const VirtualLightListGl& candidates, const GBuf
   lights_.buffer.bind_storage(CHOSEN_LIGHTS_SLOT);
   ranges_.bind_storage(CHOSEN_RANGES_SLOT);
   gbuffer.bind();
+  receivers_program_.set("first_point", GLuint(sample) * RESAMPLE_RECEIVERS);
+  resample_.set("step_shift", float(sample_shift(SampleChoice::chosen_lights, std::uint64_t(sample))));
   receivers_program_.use();
   gl::dispatch_linear(RESAMPLE_RECEIVERS, LINEAR_GROUP);
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

@@ -24,11 +24,13 @@ class ResampleVirtualLights {
   /// @param candidates_per_light that each light is resampled from.
   explicit ResampleVirtualLights(int candidates_per_light);
 
-  void run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer);
+  /// @param sample  FrameData::sample: other pixels, and steps that begin elsewhere.
+  void run(const VirtualLightListGl& candidates, const GBuffer& gbuffer, gl::PassTimer& timer, int sample = 0);
 
   const VirtualLightListGl& lights() const { return lights_; }
   /// vec2 for each light: the range [x, y) of its source's candidates that it stands for, counted from 0 and in parts
-  /// of one. Ranges follow on one another, without gap or overlap.
+  /// of one. Ranges follow on one another, without gap or overlap; the last one may go on at the first candidate, whose
+  /// place is then the number of candidates.
   const gl::Buffer& ranges() const { return ranges_; }
   int candidates_per_light() const { return candidates_per_light_; }
   size_t bytes() const { return lights_.buffer.bytes() + receivers_.bytes() + weights_.bytes() + ranges_.bytes(); }

@@ -11,9 +11,11 @@ VirtualLightSubdivision::VirtualLightSubdivision()
     : program_(gl::Program::compute("screen/lights/resample/virtual_light_subdivision.comp.glsl")) {}
 
 void VirtualLightSubdivision::run(const ReflectiveShadowMap& maps, const VirtualLights& candidates,
-                                  const ResampleVirtualLights& chosen, gl::PassTimer& timer) {
+                                  const ResampleVirtualLights& chosen, gl::PassTimer& timer, int sample) {
   const auto scope = timer.scope(name);
+  apart_ = sample > 0;
   const VirtualLightListGl& lights = chosen.lights();
+  program_.set("apart", apart_ ? 1 : 0);
   gl::reserve(sublights_, padded_count(lights) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight));
   gl::reserve(near_lights_, padded_count(lights) * sizeof(shared::NearLight));
   const auto bind = [&] {

@@ -19,17 +19,22 @@ class VirtualLightSubdivision {
   static constexpr const char* product_name = "sub-lights of virtual lights";
   VirtualLightSubdivision();
 
-  /// @param chosen  of `candidates`.
+  /// @param chosen  of `candidates`. @param sample  FrameData::sample.
   void run(const ReflectiveShadowMap& maps, const VirtualLights& candidates, const ResampleVirtualLights& chosen,
-           gl::PassTimer& timer);
+           gl::PassTimer& timer, int sample = 0);
 
   const gl::Buffer& sublights() const { return sublights_; }  // shared::SubLight, SUBLIGHTS_PER_LIGHT for each light
   const gl::Buffer& near_lights() const { return near_lights_; }  // shared::NearLight of each light
+  /// Of the pictures that are averaged all but the first: sub-lights take their own shares of a light's surroundings,
+  /// by their places instead of its, and those on several surfaces are not summed (irradiance_of_sublights_apart() of
+  /// shaders/screen/lights/resample/sublights.glsl). Means come out right; a picture alone is smoother without.
+  bool apart() const { return apart_; }
   size_t bytes() const { return sublights_.bytes() + near_lights_.bytes(); }
 
  private:
   void run_source(int light, int first, int count, bool along_curve, double measure, int candidates_per_light);
 
+  bool apart_ = false;
   gl::Buffer sublights_, near_lights_;
   gl::Program program_;
 };

@@ -36,7 +36,7 @@ class RsmLights : public Stage {
       : lights_(context.scene, options_for(context)), with_sky_(sky_goes_by_lights(context.options)) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
-    lights_.run(frame.shadow_maps, with_sky_ ? frame.find<SkyMaps>() : nullptr, timer);
+    lights_.run(frame.shadow_maps, with_sky_ ? frame.find<SkyMaps>() : nullptr, timer, frame.sample);
     frame.lend(lights_);
     frame.lend(lights_.list());
   }

@@ -12,6 +12,7 @@
 #include "core/halton.h"
 #include "core/hilbert.h"
 #include "core/light_cone.h"
+#include "core/sample_sequence.h"
 #include "shaders/screen/lights/rsm/slots.shared.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
 #include "shaders/shared/group_sizes.shared.h"
@@ -32,14 +33,16 @@ const VirtualLightOptions& checked(const VirtualLightOptions& options) {
   return options;
 }
 
-std::vector<glm::vec4> samples_of(const Light& light, Sampling sampling, int count) {
+std::vector<glm::vec4> samples_of(const Light& light, Sampling sampling, int count, std::uint64_t sample) {
   std::vector<glm::vec4> samples;
   samples.reserve(size_t(count));
+  const std::uint64_t first = first_halton_point(sample, count);
   if (sampling == Sampling::flux || light.type == Light::Type::directional) {
-    for (int i = 1; i <= count; ++i) samples.emplace_back(glm::vec2(halton(std::uint64_t(i))), 0.0f, 0.0f);
+    for (int i = 0; i < count; ++i) samples.emplace_back(glm::vec2(halton(first + std::uint64_t(i))), 0.0f, 0.0f);
     return samples;
   }
-  for (const glm::vec3 d : halton_directions_in_cone(cone_height(light), count)) samples.emplace_back(d, 0.0f);
+  for (const glm::vec3 d : halton_directions_in_cone(cone_height(light), count, first - 1))
+    samples.emplace_back(d, 0.0f);
   return samples;
 }
 
@@ -106,8 +109,9 @@ LightShares VirtualLights::shares(bool with_sky) const {
 
 /// Makes room, and places what does not depend on the maps: points on surfaces, zeros behind the last. @return whether
 /// it had to.
-bool VirtualLights::lay_out(const LightShares& shares) {
-  const bool moved = std::exchange(moved_, false) && shares.of_emitters + shares.of_sky > 0;
+bool VirtualLights::lay_out(const LightShares& shares, int sample) {
+  const bool others = std::exchange(sample_, sample) != sample;
+  const bool moved = (std::exchange(moved_, false) || others) && shares.of_emitters + shares.of_sky > 0;
   std::vector<int> of_light = shares.of_light;
   if (shares.of_sky > 0) of_light.push_back(shares.of_sky);
   if (!moved && list_.buffer.id() != 0 && of_light == list_.of_light && shares.of_emitters == list_.emitted)
@@ -116,7 +120,7 @@ bool VirtualLights::lay_out(const LightShares& shares) {
   list_.reflected = std::accumulate(list_.of_light.begin(), list_.of_light.end(), 0);
   list_.emitted = shares.of_emitters;
   std::vector<shared::VirtualLight> lights(padded_count(list_));
-  const std::vector<EmitterPoint> points = emitters_.points(list_.emitted);
+  const std::vector<EmitterPoint> points = emitters_.points(list_.emitted, sample);
   std::transform(points.begin(), points.end(), lights.begin() + list_.reflected, to_virtual_light);
   const size_t bytes = lights.size() * sizeof(shared::VirtualLight);
   if (list_.buffer.bytes() == bytes) {
@@ -124,7 +128,7 @@ bool VirtualLights::lay_out(const LightShares& shares) {
   } else {
     list_.buffer = gl::Buffer(lights);
   }
-  surfaces_ = surface_points(scene_, shares.of_sky);
+  surfaces_ = surface_points(scene_, shares.of_sky, sample);
   return true;
 }
 
@@ -144,22 +148,25 @@ void VirtualLights::light_by_sky(const SkyMaps& sky, bool laid_out, int first, i
   list_.buffer.bind_storage(SKY_POINTS_SLOT);
   sky_program_.set("first", first);
   sky_program_.set("count", count);
+  sky_program_.set("sample_index", sample_);
   sky_program_.set("subsets", std::max(sky.part_count() / kSkyPartsOfPoint, 1));
   sky_program_.use();
   gl::dispatch_linear(size_t(count), LINEAR_GROUP);
 }
 
 /// Uploads the samples of all lights, unless they are what they were.
-void VirtualLights::make_samples(const LightShares& shares) {
+void VirtualLights::make_samples(const LightShares& shares, int sample) {
+  if (along_curve()) sample = 0;  // there are none
   std::vector<SampleKey> keys;
   for (size_t i = 0; i < scene_.lights.size(); ++i) {
     const Light& light = scene_.lights[i];
-    keys.push_back({light.type, light.type == Light::Type::spot ? light.outer_cone_rad : 0.0f, shares.of_light[i]});
+    keys.push_back(
+        {light.type, light.type == Light::Type::spot ? light.outer_cone_rad : 0.0f, shares.of_light[i], sample});
   }
   if (samples_.id() != 0 && keys == keys_) return;
   std::vector<glm::vec4> samples;
   for (size_t i = 0; i < scene_.lights.size() && !along_curve(); ++i) {
-    auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i]);
+    auto of_light = samples_of(scene_.lights[i], options_.sampling, shares.of_light[i], std::uint64_t(sample));
     if (options_.candidates > 1) {
       const bool by_area = options_.sampling == Sampling::flux || scene_.lights[i].type == Light::Type::directional;
       order_along_curve(of_light, !by_area);
@@ -167,16 +174,16 @@ void VirtualLights::make_samples(const LightShares& shares) {
     samples.insert(samples.end(), of_light.begin(), of_light.end());
   }
   if (samples.empty()) samples.emplace_back(0.0f);
-  samples_ = gl::Buffer(samples);
+  gl::put(samples_, samples);
   keys_ = std::move(keys);
 }
 
-void VirtualLights::run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer) {
+void VirtualLights::run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer, int sample) {
   assert(maps.light_count() == int(scene_.lights.size()));
   const auto scope = timer.scope(name);
   const LightShares of = shares(sky != nullptr);
-  const bool laid_out = lay_out(of);
-  make_samples(of);
+  const bool laid_out = lay_out(of, sample);
+  make_samples(of, sample);
   int first = 0;
   for (int light = 0; light < maps.light_count(); ++light) {
     const int count = of.of_light[size_t(light)];
@@ -190,7 +197,7 @@ void VirtualLights::run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl:
     if (options_.sampling == Sampling::flux) {
       sample_by_flux(maps, light);
     } else {
-      sample_evenly(maps, light);
+      sample_evenly(maps, light, sample);
     }
     list_.buffer.bind_storage(SAMPLED_LIGHTS_SLOT);
     lights_program_.use();
@@ -211,10 +218,11 @@ double VirtualLights::set_sampling(const gl::Program& program, const ReflectiveS
   return rectangle_of_sun_m2(maps.layers()[layer], maps.resolution(light));
 }
 
-void VirtualLights::sample_evenly(const ReflectiveShadowMap& maps, int light) const {
+void VirtualLights::sample_evenly(const ReflectiveShadowMap& maps, int light, int sample) const {
   const double measure = set_sampling(lights_program_, maps, light);
   lights_program_.set("measure", float(measure / keys_[size_t(light)].count));
   lights_program_.set("along_curve", along_curve() ? 1 : 0);
+  lights_program_.set("in_step", float(place_in_strata(std::uint64_t(sample))));
 }
 
 void VirtualLights::sample_by_flux(const ReflectiveShadowMap& maps, int light) {

@@ -42,8 +42,9 @@ class VirtualLights {
   VirtualLights(const Scene& scene, const VirtualLightOptions& options);
 
   /// @param maps  of the lights of `scene` as they are now. @param sky  of its sky; null: that is not looked at.
+  /// @param sample  FrameData::sample: of n of them all lights together are those of one with n times as many.
   /// @throws Error(over_limit) when per_light times the number of sources exceeds kMaxCount.
-  void run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer);
+  void run(const ReflectiveShadowMap& maps, const SkyMaps* sky, gl::PassTimer& timer, int sample = 0);
   /// The scene's geometry is another than before: its emissive surfaces are looked at again.
   void scene_moved();
 
@@ -69,14 +70,14 @@ class VirtualLights {
   struct SampleKey {
     Light::Type type;
     float outer_cone_rad;  // 0 unless a spot's
-    int count;
+    int count, sample;
     bool operator==(const SampleKey&) const = default;
   };
   LightShares shares(bool with_sky) const;
-  bool lay_out(const LightShares& shares);
+  bool lay_out(const LightShares& shares, int sample);
   void light_by_sky(const SkyMaps& sky, bool laid_out, int first, int count);
-  void make_samples(const LightShares& shares);
-  void sample_evenly(const ReflectiveShadowMap& maps, int light) const;
+  void make_samples(const LightShares& shares, int sample);
+  void sample_evenly(const ReflectiveShadowMap& maps, int light, int sample) const;
   void sample_by_flux(const ReflectiveShadowMap& maps, int light);
 
   const Scene& scene_;
@@ -84,6 +85,7 @@ class VirtualLights {
   EmitterPoints emitters_;
   VirtualLightListGl list_;
   bool moved_ = false;
+  int sample_ = 0;  // that points on surfaces are of
   int sky_version_ = -1;
   std::vector<SurfaceSample> surfaces_;  // that the sky may light
   gl::Buffer samples_;                   // vec4 each: of all lights, in their order

@@ -14,8 +14,9 @@ class SideSkyGl {
  public:
   static constexpr const char* name = "screen/sources/sky/side_sky";
   SideSkyGl();
-  /// @param flux  of these voxels; added to emitted().
-  void run(const VoxelGridGl& voxels, const SkyMaps& maps, const SideFluxGl& flux, gl::PassTimer& timer);
+  /// @param flux  of these voxels; added to emitted(). @param sample  FrameData::sample: sides look at other parts.
+  void run(const VoxelGridGl& voxels, const SkyMaps& maps, const SideFluxGl& flux, gl::PassTimer& timer,
+           int sample = 0);
 
  private:
   gl::Program program_;

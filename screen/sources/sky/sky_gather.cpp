@@ -25,11 +25,12 @@ SkyGather::SkyGather(glm::ivec2 size, const SkyOptions& options)
   gather_listed_ = gl::Program::compute(SHADER, {"LISTED"});
 }
 
-void SkyGather::run(const GBuffer& gbuffer, const SkyMaps& maps, float scene_diagonal_m, gl::PassTimer& timer) {
+void SkyGather::run(const GBuffer& gbuffer, const SkyMaps& maps, float scene_diagonal_m, gl::PassTimer& timer,
+                    int sample) {
   gbuffer.bind();
   {
     const auto scope = timer.scope(name);
-    gather(maps);
+    gather(maps, sample);
     if (blur_) blur_->run(irradiance_, radiance_, GeometryBlur::Estimate::anew, scene_diagonal_m);
   }
   if (!blur_ || !(options_.exact_rows > 0.0f)) return;
@@ -38,7 +39,7 @@ void SkyGather::run(const GBuffer& gbuffer, const SkyMaps& maps, float scene_dia
   gather_again(maps);
 }
 
-void SkyGather::gather(const SkyMaps& maps) {
+void SkyGather::gather(const SkyMaps& maps, int sample) {
   const int n = options_.interleave;
   maps.bind(gather_);
   (n > 1 ? irradiance_ : radiance_).bind_image(SKY_IRRADIANCE_IMAGE, GL_WRITE_ONLY);
@@ -46,7 +47,7 @@ void SkyGather::gather(const SkyMaps& maps) {
   gather_.use();
   for (int subset = 0; subset < n * n; ++subset) {
     gather_.set("subset", subset);
-    gather_.set("offset", place_in_block(subset, n));
+    gather_.set("offset", place_in_block((subset + sample) % (n * n), n));
     gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   }
   wait_for_pictures();

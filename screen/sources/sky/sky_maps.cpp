@@ -12,6 +12,19 @@
 #include "shaders/screen/sources/sky/slots.shared.h"
 
 namespace volgi::screen {
+namespace {
+
+void warn_of_coarse_maps(const Scene& scene, int resolution) {
+  constexpr float COARSE_M = 0.5f;  // half of it is more than most walls are thick
+  const float texel_m = glm::distance(scene.bounds_min, scene.bounds_max) / float(resolution);
+  if (texel_m <= COARSE_M) return;
+  warn_once(
+      fmt::format("{}: the sky's maps have texels of {:.2g} m: its light may pass walls thinner than half of that; "
+                  "--set sky.map=N makes more of them",
+                  scene.name, double(texel_m)));
+}
+
+}  // namespace
 
 SkyMaps::SkyMaps(const SkyOptions& options)
     : resolution_(options.map_texels),
@@ -19,11 +32,12 @@ SkyMaps::SkyMaps(const SkyOptions& options)
       program_(gl::Program::raster("screen/base/reflective_shadow_map.vert.glsl",
                                    "screen/sources/sky/sky_maps.frag.glsl")) {}
 
-void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer) {
-  if (drawn_ == scene.sky) return;
+void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer, int sample) {
+  if (drawn_ == scene.sky && drawn_sample_ == sample) return;
   const auto scope = timer.scope(name);
+  if (!drawn_ || drawn_ != scene.sky) sky_.emplace(scene.sky, parts_asked_);
   layers_.clear();
-  parts_ = sky_lights(*scene.sky, parts_asked_);
+  parts_ = sky_->lights(sample);
   for (const SkyLight& light : parts_) {
     Light sun;
     sun.type = Light::Type::directional;
@@ -31,24 +45,8 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
     layers_.push_back(reflective_shadow_layers(sun, resolution_, scene.bounds_min, scene.bounds_max).front());
   }
   upload_parts();
-  constexpr float COARSE_M = 0.5f;  // half of it is more than most walls are thick
-  const float texel_m = glm::distance(scene.bounds_min, scene.bounds_max) / float(resolution_);
-  if (texel_m > COARSE_M)
-    warn_once(
-        fmt::format("{}: the sky's maps have texels of {:.2g} m: its light may pass walls thinner than half of that; "
-                    "--set sky.map=N makes more of them",
-                    scene.name, double(texel_m)));
-  if (framebuffers_.size() != layers_.size()) {
-    const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
-    depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, part_count());
-    normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, part_count());
-    framebuffers_.clear();
-    for (int layer = 0; layer < part_count(); ++layer) {
-      using Attachment = gl::Framebuffer::Attachment;
-      const std::array colors{Attachment{&normal_, layer}};
-      framebuffers_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
-    }
-  }
+  warn_of_coarse_maps(scene, resolution_);
+  if (framebuffers_.size() != layers_.size()) make_room();
   gl::begin_geometry_pass();
   for (size_t layer = 0; layer < layers_.size(); ++layer) {
     framebuffers_[layer].bind();
@@ -60,7 +58,20 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
     buffers.draw(program_);
   }
   drawn_ = scene.sky;
+  drawn_sample_ = sample;
   ++version_;
+}
+
+void SkyMaps::make_room() {
+  const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
+  depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, part_count());
+  normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, part_count());
+  framebuffers_.clear();
+  for (int layer = 0; layer < part_count(); ++layer) {
+    using Attachment = gl::Framebuffer::Attachment;
+    const std::array colors{Attachment{&normal_, layer}};
+    framebuffers_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
+  }
 }
 
 void SkyMaps::upload_parts() {

@@ -9,6 +9,7 @@
 #include "core/gl/scene_buffers.h"
 #include "core/scene.h"
 #include "core/sky.h"
+#include "screen/base/named_texture.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
 namespace volgi::screen {
@@ -25,16 +26,16 @@ struct SkyOptions {
 };
 
 /// Pass "screen/sources/sky/sky_maps": the sky as lights that are far away (core/sky.h), each with a map of what it
-/// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Drawn anew only where sky
-/// or scene have changed. Cost then: one draw of the scene a part; 8 bytes of GPU memory a texel.
+/// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Drawn anew only where
+/// sky, scene or sample have changed. Cost then: one draw of the scene a part; 8 bytes of GPU memory a texel.
 class SkyMaps {
  public:
   static constexpr const char* name = "screen/sources/sky/sky_maps";
   static constexpr const char* product_name = "maps of the sky";
   explicit SkyMaps(const SkyOptions& options);
 
-  /// @param scene  has a sky.
-  void run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer);
+  /// @param scene  has a sky. @param sample  FrameData::sample: parts that lie elsewhere, hence other maps.
+  void run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer, int sample = 0);
   void scene_moved() { drawn_.reset(); }
   /// For programs with screen/sources/sky/sky_parts.glsl.
   void bind(const gl::Program& program) const;
@@ -44,14 +45,21 @@ class SkyMaps {
   /// Grows whenever the maps change.
   int version() const { return version_; }
   size_t bytes() const;
+  void list_textures(std::vector<NamedTexture>& list) const {
+    list_texture(list, name, "depth", depth_);
+    list_texture(list, name, "normals", normal_);
+  }
 
  private:
+  void make_room();
   void upload_parts();
 
   int resolution_;
   int parts_asked_;
   int version_ = 0;
   std::shared_ptr<const Sky> drawn_;
+  int drawn_sample_ = 0;
+  std::optional<SkyParts> sky_;  // of the last sky that was drawn
   std::vector<SkyLight> parts_;
   std::vector<shared::ReflectiveShadowLayer> layers_;
   gl::Texture depth_, normal_;

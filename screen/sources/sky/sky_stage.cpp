@@ -48,10 +48,10 @@ class SkyStage : public Stage {
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     if (!frame.scene.sky) return;
-    maps_.run(frame.triangles, frame.scene, timer);
+    maps_.run(frame.triangles, frame.scene, timer, frame.sample);
     frame.lend(maps_);
     if (!gather_) return;
-    gather_->run(frame.gbuffer, maps_, frame.scene_diagonal_m, timer);
+    gather_->run(frame.gbuffer, maps_, frame.scene_diagonal_m, timer, frame.sample);
     frame.layers.push_back({&gather_->radiance(), {LightPath::sky_direct}});
   }
   void scene_changed() override { maps_.scene_moved(); }
@@ -59,6 +59,10 @@ class SkyStage : public Stage {
     report.add("sky_parts", double(maps_.part_count()),
                maps_.part_count() > 0 ? std::to_string(maps_.part_count()) + " parts of the sky" : std::string());
     report.memory_bytes += maps_.bytes() + (gather_ ? gather_->bytes() : 0);
+  }
+  void list_textures(std::vector<NamedTexture>& list) const override {
+    maps_.list_textures(list);
+    if (gather_) gather_->list_textures(list);
   }
 
  private:

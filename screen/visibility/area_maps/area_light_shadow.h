@@ -4,6 +4,7 @@
 
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "screen/base/named_texture.h"
 #include "screen/visibility/area_maps/paraboloid_depth_maps.h"
 #include "screen/visibility/area_maps/virtual_area_lights.h"
 
@@ -34,6 +35,7 @@ class AreaLightShadow {
   /// (compiled with define()).
   virtual void bind(const ParaboloidDepthMaps& maps, const gl::Program& program) const = 0;
   virtual size_t bytes() const = 0;
+  virtual void list_textures(std::vector<NamedTexture>& /*list*/) const {}
 };
 
 }  // namespace volgi::screen

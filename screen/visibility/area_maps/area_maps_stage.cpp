@@ -50,7 +50,7 @@ class AreaMapsStage : public Stage {
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& lights = frame.get<VirtualLightListGl>();
-    area_lights_.run(lights.buffer, lights.count(), frame.scene_diagonal_m, timer);
+    area_lights_.run(lights.buffer, lights.count(), frame.scene_diagonal_m, timer, frame.sample);
     maps_.run(frame.triangles, area_lights_, timer);
     shadow_->run(maps_, timer);
     frame.lend(clusters_);
@@ -58,6 +58,10 @@ class AreaMapsStage : public Stage {
   void report(FrameReport& report) const override {
     report.add("vals", double(area_lights_.count()), std::to_string(area_lights_.count()) + " clusters");
     report.memory_bytes += area_lights_.bytes() + maps_.bytes() + shadow_->bytes();
+  }
+  void list_textures(std::vector<NamedTexture>& list) const override {
+    maps_.list_textures(list);
+    shadow_->list_textures(list);
   }
 
  private:

@@ -19,6 +19,12 @@ class ConvolutionShadow final : public AreaLightShadow {
   std::string define() const override;
   void bind(const ParaboloidDepthMaps& maps, const gl::Program& program) const override;
   size_t bytes() const override;
+  void list_textures(std::vector<NamedTexture>& list) const override {
+    list_texture(list, name, "basis", basis_);
+    list_texture(list, name, "basis times depth", basis_depth_);
+    list_texture(list, name, "depth", depth_);
+    list_texture(list, name, "farthest", farthest_);
+  }
 
  private:
   Filter filter_;

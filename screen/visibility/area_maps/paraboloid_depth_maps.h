@@ -3,6 +3,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "core/gl/scene_buffers.h"
+#include "screen/base/named_texture.h"
 #include "screen/visibility/area_maps/virtual_area_lights.h"
 
 namespace volgi::screen {
@@ -28,6 +29,7 @@ class ParaboloidDepthMaps {
   /// outside the disk. Texel (x, y) of a layer is the disk's point ((x, y) + 0.5) * 2 / resolution - 1.
   const gl::Texture& distance() const { return distance_; }
   size_t bytes() const;
+  void list_textures(std::vector<NamedTexture>& list) const { list_texture(list, name, "distance", distance_); }
 
  private:
   struct Programs {

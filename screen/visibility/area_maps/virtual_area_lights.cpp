@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/sample_sequence.h"
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/visibility/area_maps/slots.shared.h"
 #include "shaders/shared/group_sizes.shared.h"
@@ -55,7 +56,8 @@ void VirtualAreaLights::run(const VirtualLights& lights, float scene_diagonal_m,
   run(lights.buffer(), lights.count(), scene_diagonal_m, timer);
 }
 
-void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer) {
+void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer,
+                            int sample) {
   assert(count >= 0 && lights.bytes() >= size_t(count) * sizeof(shared::VirtualLight));
   const auto scope = timer.scope(name);
   const size_t list_bytes = size_t((count + kListStep - 1) / kListStep) * kListStep * sizeof(GLuint);
@@ -93,6 +95,8 @@ void VirtualAreaLights::run(const gl::Buffer& lights, int count, float scene_dia
   list_.use();
   gl::dispatch({options_.count + 1, 1, 1}, {1, 1, 1});
   wait_for_writes();
+  shape_.set("any_light", sample > 0 ? 1 : 0);
+  shape_.set("which_light", float(sample_shift(SampleChoice::seen_from, std::uint64_t(sample))));
   shape_.use();
   gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -43,8 +43,9 @@ class VirtualAreaLights {
   explicit VirtualAreaLights(const VirtualAreaLightOptions& options);
 
   void run(const VirtualLights& lights, float scene_diagonal_m, gl::PassTimer& timer);
-  /// @param lights  shared::VirtualLight, at least `count`.
-  void run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer);
+  /// @param lights  shared::VirtualLight, at least `count`. @param sample  FrameData::sample: of all but the first a
+  /// cluster's position is that of any of its lights, so that means see what all of them see.
+  void run(const gl::Buffer& lights, int count, float scene_diagonal_m, gl::PassTimer& timer, int sample = 0);
 
   int count() const { return options_.count; }
   const gl::Buffer& buffer() const { return area_lights_; }     // shared::VirtualAreaLight x MAX_VIRTUAL_AREA_LIGHTS

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/sample_sequence.h"
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/visibility/negative/negative_candidates.shared.h"
 #include "shaders/screen/visibility/negative/slots.shared.h"
@@ -49,7 +50,7 @@ NegativeLights::NegativeLights(const NegativeLightOptions& options)
 }
 
 void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights,
-                         const VoxelGridGl* voxels, gl::PassTimer& timer) {
+                         const VoxelGridGl* voxels, gl::PassTimer& timer, int sample) {
   assert((options_.method == Method::sides) == (voxels != nullptr));
   const auto scope = timer.scope(name);
   gbuffer.bind();
@@ -68,6 +69,12 @@ void NegativeLights::run(const GBuffer& gbuffer, const Camera& camera, const Vir
   if (options_.method != Method::cochran2007) choose(voxels);
   place_.use();
   place_.set("negative_count", options_.count);
+  if (options_.method == Method::cochran2007) {
+    place_.set("first_point", GLuint(sample) * GLuint(options_.count));
+  } else {
+    const double in_step = 0.5 + sample_shift(SampleChoice::negative_lights, std::uint64_t(sample));
+    place_.set("in_step", float(glm::fract(in_step)));
+  }
   gl::dispatch({options_.count, 1, 1}, {1, 1, 1});
   glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
 }

@@ -36,9 +36,9 @@ class NegativeLights {
   static constexpr const char* product_name = "negative lights";
   explicit NegativeLights(const NegativeLightOptions& options);
 
-  /// @param voxels  for Method::sides, else null.
+  /// @param voxels  for Method::sides, else null. @param sample  FrameData::sample: other places.
   void run(const GBuffer& gbuffer, const Camera& camera, const VirtualLightListGl& lights, const VoxelGridGl* voxels,
-           gl::PassTimer& timer);
+           gl::PassTimer& timer, int sample = 0);
 
   const gl::Buffer& buffer() const { return lights_; }  // shared::NegativeLight x MAX_NEGATIVE_LIGHTS
   int count() const { return options_.count; }

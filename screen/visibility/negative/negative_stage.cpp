@@ -40,7 +40,7 @@ class NegativeStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     if (voxels_) voxels_->run(frame.triangles, timer);
     negative_.run(frame.gbuffer, frame.camera, frame.get<VirtualLightListGl>(), voxels_ ? &voxels_->voxels() : nullptr,
-                  timer);
+                  timer, frame.sample);
     frame.lend(negative_);
   }
   void scene_changed() override {

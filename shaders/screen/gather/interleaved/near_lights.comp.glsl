@@ -17,8 +17,12 @@ vec3 irradiance_of_light(Receiver at, int i) {
   NearLight light = near_lights[i];
   vec3 way = light.position - at.position;
   float squared = dot(way, way);
-  float share = 1.0 - far_share(disk_nearness(squared, light.area_m2), zone);
   bool behind = dot(way, at.geometric) <= -light.spread_m || -dot(way, light.normal) <= light.rise_m;
+  if (apart != 0) {
+    int coarse_count = !behind && squared < reach_squared(light) ? COARSE_SUBLIGHTS : 0;
+    return irradiance_of_sublights_apart(at, i, light.area_m2, coarse_count, zone);
+  }
+  float share = 1.0 - far_share(disk_nearness(squared, light.area_m2), zone);
   return irradiance_of_sublights(at, i, behind ? 0.0 : share, zone);
 }
 

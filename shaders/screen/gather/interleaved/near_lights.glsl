@@ -13,5 +13,12 @@ layout(std430, binding = TILE_MASKS_SLOT) buffer Masks { uint masks[]; };  // 32
 uniform ivec2 tiles;
 uniform int words;   // of a tile's mask
 uniform float zone;  // areas of a light
+uniform int apart;   // 1: sub-lights have a share by their own places (irradiance_of_sublights_apart())
+
+// Squared distance from the light at which it has the last of its sub-lights' light.
+float reach_squared(NearLight light) {
+  float reach = sqrt(2.0 * zone * light.area_m2) + light.spread_m;
+  return apart != 0 ? reach * reach : 2.0 * zone * light.area_m2;
+}
 
 #endif

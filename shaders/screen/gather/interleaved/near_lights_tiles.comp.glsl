@@ -12,7 +12,7 @@ uniform int light_count;
 
 bool reaches(NearLight light, Box box) {
   vec3 d = clamp(light.position, box.least, box.most) - light.position;
-  if (dot(d, d) >= 2.0 * zone * light.area_m2) return false;
+  if (dot(d, d) >= reach_squared(light)) return false;
   // The corner of the box that is farthest in front of the light's plane.
   vec3 corner = mix(box.least, box.most, greaterThan(light.normal, vec3(0.0)));
   return dot(corner - light.position, light.normal) > light.rise_m;

@@ -10,6 +10,7 @@ layout(std430, binding = CHOSEN_LIGHTS_SLOT) writeonly buffer Lights { VirtualLi
 layout(std430, binding = CHOSEN_RANGES_SLOT) writeonly buffer Ranges { vec2 ranges[]; };
 uniform int first;
 uniform int count;
+uniform float step_shift;  // of all steps, in [0, 1): how far into a step they begin
 
 int candidate_at(float sum) {
   int low = 0, high = candidate_count - 1;
@@ -29,10 +30,16 @@ float place_of(float sum) {
   return float(candidate) + (own > 0.0 ? clamp((sum - before) / own, 0.0, 1.0) : 0.5);
 }
 
+// Where what light k stands for begins. What is left before the first step is the end of the last one.
+float begin_of(int k) {
+  return k == 0 && step_shift == 0.0 ? 0.0 : place_of((float(k) + step_shift) / float(count));
+}
+
 void main() {
   int k = int(global_index());
   if (k >= count) return;
-  int candidate = candidate_at((float(k) + 0.5) / float(count));
+  float at = (float(k) + 0.5 + step_shift) / float(count);
+  int candidate = candidate_at(at < 1.0 ? at : at - 1.0);
   float probability = summed_probability(candidate) - summed_probability(candidate - 1);
   VirtualLight l = candidate_lights[first_candidate + candidate];
   // Candidates stand for one part in candidate_count each, the chosen ones for one in count.
@@ -41,6 +48,5 @@ void main() {
   // One that is chosen more than once stays as large as it is: its copies lie in one place and are one light together.
   l.area_m2 *= max(share, 1.0);
   chosen_lights[first + k] = l;
-  ranges[first + k] = vec2(k == 0 ? 0.0 : place_of(float(k) / float(count)),
-                           k == count - 1 ? float(candidate_count) : place_of(float(k + 1) / float(count)));
+  ranges[first + k] = vec2(begin_of(k), k == count - 1 ? float(candidate_count) + begin_of(0) : begin_of(k + 1));
 }

@@ -54,6 +54,42 @@ vec3 irradiance_of_coarse(Receiver at, int light, int coarse, float zone) {
   return mix(sum, whole, far);
 }
 
+// The same where every part has a share by its own place (VirtualLightSubdivision::apart()): the light may
+// lie anywhere in what it stands for, and the nearer to the point the brighter it is and the less of it counts, so that
+// means over many lights would come out too dark.
+// @param area_m2  of the light. @param coarse_count  0: nothing is done.
+vec3 irradiance_of_sublights_apart(Receiver at, int light, float area_m2, int coarse_count, float zone) {
+  int first = light * SUBLIGHTS_PER_LIGHT;
+  float reach = sqrt(2.0 * zone * area_m2);  // beyond it a part has no share
+  vec3 sum = vec3(0.0);
+  for (int coarse = 0; coarse < coarse_count; ++coarse) {
+    vec4 place = sublight_halves[2 * (first + coarse)];
+    vec3 way = place.xyz - at.position;
+    float squared = dot(way, way);
+    float far = far_share(disk_nearness(squared, place.w), zone);
+    float own = 1.0 - far_share(disk_nearness(squared, area_m2), zone);
+    // Loops where branches are meant, as above.
+    int whole = far * own > 0.0 ? 1 : 0;
+    for (int k = 0; k < whole; ++k) {
+      Disk d = disk_of(at, first + coarse);
+      sum += d.flux * (far * own * COARSE_DISK_TO_POINT(d.height, d.along, d.facing, d.squared, d.area_m2));
+    }
+    int first_fine = first + COARSE_SUBLIGHTS + coarse * FINE_PER_COARSE;
+    float fine_reach = reach + sqrt(2.0 * place.w);  // of_one_surface()
+    int fine_count = far < 1.0 && squared < fine_reach * fine_reach ? FINE_PER_COARSE : 0;
+    for (int k = 0; k < fine_count; ++k) {
+      vec3 fine_way = sublight_halves[2 * (first_fine + k)].xyz - at.position;
+      int reached = dot(fine_way, fine_way) < reach * reach ? 1 : 0;
+      for (int n = 0; n < reached; ++n) {
+        Disk f = disk_of(at, first_fine + k);
+        own = (1.0 - far) * (1.0 - far_share(disk_nearness(f.squared, area_m2), zone));
+        sum += f.flux * (own * disk_to_point(f.height, f.along, f.facing, f.squared, f.area_m2));
+      }
+    }
+  }
+  return sum;
+}
+
 // @param share  of the light's irradiance that is theirs; nothing is done for 0.
 vec3 irradiance_of_sublights(Receiver at, int light, float share, float zone) {
   int coarse_count = share > 0.0 ? COARSE_SUBLIGHTS : 0;

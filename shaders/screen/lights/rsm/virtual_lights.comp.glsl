@@ -9,8 +9,11 @@
 layout(local_size_x = LINEAR_GROUP) in;
 uniform float measure;    // of one part: solid angle [sr], of a sun area across the light [m^2]
 uniform int along_curve;  // 1: along Hilbert's curve
+uniform float in_step;    // where in each step along it, in [0, 1): the same for all, so that they stay equal
 
-vec2 place_on_curve(int i) { return hilbert_point(uint((float(i) + 0.5) / float(count) * 4294967296.0)); }
+vec2 place_on_curve(int i) {
+  return hilbert_point(uint(min((float(i) + in_step) / float(count), 0.99999994) * 4294967296.0));
+}
 
 void main() {
   int i = int(global_index());

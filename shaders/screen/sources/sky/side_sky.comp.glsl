@@ -11,6 +11,7 @@
 layout(local_size_x = LINEAR_GROUP) in;
 layout(std430, binding = SKY_FLUX_SLOT) buffer Flux { vec4 flux[]; };
 uniform int stride;
+uniform int sample_index;  // of the pictures that are averaged
 
 // As first_light_of_side() of propagation/light_in/side_gather_cpu.h.
 int first_of_side(ivec3 cell, int face) {
@@ -27,7 +28,7 @@ void main() {
   Side side = sides[s];
   // Beside its surface by what vertices are rounded to, or a side would hide the sky from itself.
   vec3 position = world_from_cell(grid, middle_of(side)) + side.normal * (grid.cell_size_m * 2.0 / float(SLICE_STEPS));
-  int first = first_of_side(cell_coord(grid, side.cell), side.face);
+  int first = (first_of_side(cell_coord(grid, side.cell), side.face) + sample_index) % stride;
   vec3 e = sky_irradiance(first, stride, position, side.normal, side.normal) * float(stride);
   flux[s] += vec4(side.albedo * side.area_m2 * e, 0.0);
 }

@@ -7,7 +7,9 @@
 layout(std430, binding = MADE_AREA_LIGHTS_SLOT) buffer AreaLights { VirtualAreaLight area_lights[]; };
 layout(std430, binding = MADE_ORDER_SLOT) readonly buffer Order { uint order[]; };
 
-uniform bool at_mean;  // VirtualAreaLightOptions::position
+uniform bool at_mean;       // VirtualAreaLightOptions::position
+uniform int any_light;      // 1: the position is that of any light instead
+uniform float which_light;  // in [0, 1)
 
 #define FAR 3.0e38
 
@@ -70,7 +72,13 @@ void main() {
   float sum = length(normal);
   if (count > 1) normal = sum > 1e-3 * float(count) ? normal / sum : centers[cluster].normal;
   vec3 middle = position.xyz / float(count);
-  if (!at_mean) middle = nearest_light(middle);
+  if (any_light != 0) {
+    // Other ones in every cluster: multiples of the golden ratio.
+    float at = fract(which_light + 0.618034 * float(cluster));
+    middle = lights[order[first + min(int(at * float(count)), count - 1)]].position;
+  } else if (!at_mean) {
+    middle = nearest_light(middle);
+  }
   vec3 right = right_of(normal);
   vec2 edges = rectangle(middle, right, cross(normal, right));
   if (t != 0u) return;

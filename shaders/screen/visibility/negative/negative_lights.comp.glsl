@@ -17,19 +17,23 @@ shared vec3 irradiance_part[64];
 shared vec3 direction_part[64];
 
 #ifdef PASSED_FLUX
+uniform float in_step;  // where in each of the steps, from 0 to 1
+
 // A candidate chosen with probability p stands for 1 / (count p) of itself. Sums that threads made apart may fall by a
 // rounding between two candidates: one met there has no weight of its own, and stands for nothing.
 ExitSurface chosen_surface(int k) {
-  int candidate = candidate_at(total_weight() * (float(k) + 0.5) / float(negative_count));
+  int candidate = candidate_at(total_weight() * (float(k) + in_step) / float(negative_count));
   ExitSurface surface = exit_surface(candidate);
   float weight = weight_of(candidate);
   surface.area_m2 *= weight > 0.0 ? total_weight() / (float(negative_count) * weight) : 0.0;
   return surface;
 }
 #else
+uniform uint first_point;  // of Halton's sequence
+
 ExitSurface chosen_surface(int k) {
   ivec2 size = textureSize(position_map, 0);
-  return exit_surface_of_pixel(halton_pixel(uint(k), size), float(size.x) * float(size.y) / float(negative_count));
+  return exit_surface_of_pixel(halton_pixel(first_point + uint(k), size), float(size.x) * float(size.y) / float(negative_count));
 }
 #endif
 
