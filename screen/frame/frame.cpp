@@ -5,8 +5,8 @@
 
 #include "core/error.h"
 #include "core/gl/context.h"
-#include "core/halton.h"
 #include "core/log.h"
+#include "core/sample_sequence.h"
 #include "core/surface.h"
 #include "screen/frame/registry.h"
 
@@ -18,11 +18,12 @@ bool runs_on_gpu(Backend backend) {
 
 Frame::Frame(const Scene& scene, const FrameOptions& options) : Frame(scene, options, recipe_of(options)) {}
 
-Frame::Frame(const Scene& scene, const FrameOptions& options, Recipe recipe)
+Frame::Frame(const Scene& scene, const FrameOptions& options, Recipe recipe,
+             std::shared_ptr<gl::SceneBuffers> triangles)
     : scene_(scene),
       options_(options),
       recipe_(std::move(recipe)),
-      buffers_(scene),
+      buffers_(triangles ? std::move(triangles) : std::make_shared<gl::SceneBuffers>(scene)),
       shadow_maps_(options.of<ReflectiveShadowMap::Resolution>()),
       gbuffer_(options.size, GL_RGBA16_SNORM, shines(scene)),
       direct_(options.size, gbuffer_.shines()),
@@ -34,7 +35,9 @@ Frame::~Frame() = default;
 
 void Frame::follow_scene(gl::PassTimer& timer) {
   const auto scope = timer.scope("screen/frame/follow_scene");
-  buffers_.set_geometry(scene_);
+  buffers_->set_geometry(scene_);
+  layers_.clear();
+  products_ = {};
   follow_with_stages();
 }
 
@@ -75,26 +78,28 @@ void Frame::warn_of_missing_light(LightPaths missing) const {
   }
 }
 
-void Frame::set_sample(int index, int count, bool jitter) {
-  buffers_.set_sample(float(index) / float(count));
-  gbuffer_.set_jitter(jitter && count > 1 ? glm::vec2(halton(std::uint64_t(index) + 1)) - 0.5f : glm::vec2(0.0f));
+void Frame::set_sample(int index, bool jitter) {
+  sample_ = jitter ? index : 0;
+  buffers_->set_sample(float(sample_shift(SampleChoice::coverage, std::uint64_t(index))));
+  gbuffer_.set_jitter(glm::vec2(pixel_shift(std::uint64_t(sample_))));
 }
 
 void Frame::render(const Camera& camera, gl::PassTimer& timer) {
-  shadow_maps_.run(buffers_, scene_, timer);
-  gbuffer_.run(buffers_, camera, timer);
+  shadow_maps_.run(*buffers_, scene_, timer);
+  gbuffer_.run(*buffers_, camera, timer);
   if (scene_.sky) {
     if (!sky_seen_) sky_seen_.emplace(gbuffer_);
     sky_seen_->run(*scene_.sky, camera, timer);
   }
   FrameData frame{.scene = scene_,
-                  .triangles = buffers_,
+                  .triangles = *buffers_,
                   .camera = camera,
                   .gbuffer = gbuffer_,
                   .shadow_maps = shadow_maps_,
                   .wanted = wanted_,
-                  .scene_diagonal_m = glm::distance(scene_.bounds_min, scene_.bounds_max)};
-  std::vector<RadianceLayer> layers;  // of later stages before those of earlier ones: small light first
+                  .scene_diagonal_m = glm::distance(scene_.bounds_min, scene_.bounds_max),
+                  .sample = sample_};
+  layers_.clear();  // of later stages before those of earlier ones: small light first
   bool lights_ready = false;
   for (const Step& step : steps_) {
     if (!lights_ready && step.plan.type->slot > Slot::lights) {
@@ -103,19 +108,26 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
     }
     step.stage->run(frame, timer);
     check_layers(step.plan, frame.layers);
-    layers.insert(layers.begin(), frame.layers.begin(), frame.layers.end());
+    layers_.insert(layers_.begin(), frame.layers.begin(), frame.layers.end());
     frame.layers.clear();
   }
   direct_.run(gbuffer_, camera, shadow_maps_, timer);
-  layers.insert(layers.begin(), {RadianceLayer{&direct_.radiance(), {LightPath::punctual_direct}},
-                                 RadianceLayer{&gbuffer_.emission(), {LightPath::emission_seen, LightPath::sky_seen}}});
-  compose_.run(gbuffer_, shown(layers), scene_.sky ? &gbuffer_.emission() : nullptr, timer);
+  layers_.insert(layers_.begin(),
+                 {RadianceLayer{&direct_.radiance(), {LightPath::punctual_direct}},
+                  RadianceLayer{&gbuffer_.emission(), {LightPath::emission_seen, LightPath::sky_seen}}});
+  products_ = std::move(frame.products);
+  compose(timer);
+}
+
+void Frame::compose(gl::PassTimer& timer) {
+  compose_.run(gbuffer_, shown(), scene_.sky ? &gbuffer_.emission() : nullptr, timer);
 }
 
 /// Direct light, then indirect, of what --light asks for.
-std::vector<const gl::Texture*> Frame::shown(std::span<const RadianceLayer> layers) const {
+std::vector<const gl::Texture*> Frame::shown() const {
   std::vector<const gl::Texture*> direct, indirect;
-  for (const RadianceLayer& layer : layers) {
+  for (const RadianceLayer& layer : layers_) {
+    if (!layer.paths.meets(shown_)) continue;
     (layer.paths.meets(INDIRECT_PATHS) ? indirect : direct).push_back(layer.texture);
   }
   if (options_.light == LightPart::direct) return direct;
@@ -124,9 +136,25 @@ std::vector<const gl::Texture*> Frame::shown(std::span<const RadianceLayer> laye
   return direct;
 }
 
+std::vector<NamedTexture> Frame::textures() const {
+  std::vector<NamedTexture> list;
+  shadow_maps_.list_textures(list);
+  gbuffer_.list_textures(list);
+  for (const Step& step : steps_) step.stage->list_textures(list);
+  list_texture(list, Direct::name, "", direct_.radiance());
+  list_texture(list, Compose::name, "", compose_.radiance());
+  return list;
+}
+
+std::vector<const StageType*> Frame::stages() const {
+  std::vector<const StageType*> list;
+  for (const Step& step : steps_) list.push_back(step.plan.type);
+  return list;
+}
+
 FrameReport Frame::report() const {
   FrameReport r;
-  r.memory_bytes = buffers_.bytes() + shadow_maps_.bytes() + gbuffer_.bytes() + direct_.bytes() + compose_.bytes() +
+  r.memory_bytes = buffers_->bytes() + shadow_maps_.bytes() + gbuffer_.bytes() + direct_.bytes() + compose_.bytes() +
                    (sky_seen_ ? sky_seen_->bytes() : 0);
   for (const Step& step : steps_) step.stage->report(r);
   return r;

@@ -58,6 +58,7 @@ struct FrameData {
   const ReflectiveShadowMap& shadow_maps;
   LightPaths wanted;  // what the picture shows, and the recipe claims
   float scene_diagonal_m;
+  int sample = 0;  // of the pictures that are averaged: what stages choose by chance (core/sample_sequence.h)
   std::vector<RadianceLayer> layers = {};
   Products products = {};
 

@@ -2,6 +2,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "screen/base/reflective_shadow_map.h"
 #include "screen/frame/light_path.h"
@@ -17,7 +18,8 @@ bool runs_on_gpu(Backend backend);
 
 /// What a picture is asked for. Options of techniques are structs of their leaves: of<VolumeOptions>().grid_cells = 64.
 struct FrameOptions {
-  std::string recipe;  // --gi; registry.h lists them; empty: default_recipe()
+  std::string recipe;                // --gi; registry.h lists them; empty: default_recipe()
+  std::vector<std::string> without;  // --without: stages of the recipe that are left out, by StageType::name
   LightPart light = LightPart::full;
   std::optional<int> bounces;  // reflections; 0: direct light alone; none: all of them
   glm::ivec2 size{512, 512};

@@ -22,6 +22,8 @@ struct Parameter {
   void (*set)(TypeMap& options, double value);
   /// None where an optional member is not set.
   std::optional<double> (*get)(const TypeMap& options);
+  /// Gives `to` what `from` has, set or not.
+  void (*copy)(const TypeMap& from, TypeMap& to);
   bool whole;  // takes whole numbers only
 };
 
@@ -78,17 +80,12 @@ constexpr Parameter parameter(ParameterText text, ParameterRange range, std::spa
       return static_cast<double>(stored);
     }
   };
-  return {text.name,
-          text.unit,
-          text.help,
-          range.least,
-          range.most,
-          names,
-          text.when_unset,
-          text.flag,
-          set,
-          get,
-          !std::is_floating_point_v<Value>};
+  const auto copy = [](const TypeMap& from, TypeMap& to) {
+    Options value = from.of<Options>();
+    Member{}(to.of<Options>()) = Member{}(value);
+  };
+  return {text.name,       text.unit, text.help, range.least, range.most, names,
+          text.when_unset, text.flag, set,       get,         copy,       !std::is_floating_point_v<Value>};
 }
 
 /// A number. @param range  both ends included.

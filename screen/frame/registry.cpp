@@ -92,8 +92,23 @@ const Recipe& default_recipe(const FrameOptions& options) {
   return recipes().back();
 }
 
-const Recipe& recipe_of(const FrameOptions& options) {
-  return options.recipe.empty() ? default_recipe(options) : find_recipe(options.recipe);
+Recipe recipe_of(const FrameOptions& options) {
+  Recipe recipe = options.recipe.empty() ? default_recipe(options) : find_recipe(options.recipe);
+  if (options.without.empty()) return recipe;
+  std::vector<std::string> known;
+  for (const StageType* stage : recipe.stages) known.emplace_back(stage->name);
+  for (const std::string& name : options.without) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(ExitCode::usage, fmt::format("--without {}: --gi {} has no such stage; it has {}", name, recipe.name,
+                                               fmt::join(known, ", ")));
+    std::erase_if(recipe.stages, [&](const StageType* stage) { return name == stage->name; });
+  }
+  LightPaths carried;
+  for (const StageType* stage : recipe.stages) {
+    for (const StageRole::Light& light : stage->role(options).adds) carried = carried | light.paths;
+  }
+  recipe.claims = recipe.claims & carried;
+  return recipe;
 }
 
 std::string recipes_that_carry(LightPaths paths) {

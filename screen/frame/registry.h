@@ -16,8 +16,9 @@ std::span<const Recipe> recipes();
 const Recipe& find_recipe(const std::string& name);
 /// What is taken where nobody names one: the first recipe that these settings allow.
 const Recipe& default_recipe(const FrameOptions& options);
-/// The one that options.recipe names, or the default one.
-const Recipe& recipe_of(const FrameOptions& options);
+/// The one that options.recipe names, or the default one; less options.without, when it claims what is left.
+/// @throws Error(usage) for a stage that it does not have, naming those that it has.
+Recipe recipe_of(const FrameOptions& options);
 /// Names of those that claim all of `paths`: "hybrid, volume or lpv".
 std::string recipes_that_carry(LightPaths paths);
 /// Options for a recipe, its preset applied.

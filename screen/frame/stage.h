@@ -6,6 +6,7 @@
 
 #include "core/gl/pass_timer.h"
 #include "core/virtual_light_list.h"
+#include "screen/base/named_texture.h"
 #include "screen/frame/frame_data.h"
 #include "screen/frame/frame_options.h"
 #include "screen/frame/frame_report.h"
@@ -62,6 +63,8 @@ class Stage {
   virtual void report(FrameReport& report) const = 0;
   /// Puts what the last frame was lit by into `list`; a stage that chooses among another's replaces those. Waits.
   virtual void list_lights(VirtualLightList& /*list*/) const {}
+  /// Textures that the last frame's run has written, under the names of their passes.
+  virtual void list_textures(std::vector<NamedTexture>& /*list*/) const {}
   /// A line for people before the first frame: where it runs, what it takes. Empty: nothing to say.
   virtual std::string announcement() const { return {}; }
 };

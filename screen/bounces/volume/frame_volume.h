@@ -3,6 +3,7 @@
 
 #include "core/gl/pass_timer.h"
 #include "core/gl/scene_buffers.h"
+#include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_options.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/reflective_shadow_map.h"
@@ -26,6 +27,7 @@ struct VolumeReport {
 /// The volume subsystem's part of a frame, wherever it runs: light in, propagation, its light on every pixel.
 class FrameVolume {
  public:
+  static constexpr const char* product_name = "the volume";
   virtual ~FrameVolume() = default;
   /// Virtual lights are there, what is seen of them is not yet: a copy to the host may begin.
   virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightSubdivision* /*subdivision*/,
@@ -36,8 +38,23 @@ class FrameVolume {
   /// The scene has changed in place, its materials, textures and images apart: the next run meets it as a new volume
   /// would. @return false if this volume cannot follow, as when the bounds make another grid: make a new one then.
   virtual bool follow_scene() { return false; }
+  /// After a first bounce on the screen: what starts on sides (emission's first reflection, the sky's) is direct(), not
+  /// in indirect() with all the rest.
+  virtual bool first_is_apart() const { return true; }
   virtual const gl::Texture& direct() const = 0;    // RGBA32F: first arrival of emission, reflected to the viewer
   virtual const gl::Texture& indirect() const = 0;  // RGBA32F [W m^-2 sr^-1]
+  virtual void list_textures(std::vector<NamedTexture>& list) const = 0;
+  /// Of the last run. Irradiance is by side, vec4 [W m^-2], `direct` of emission's arrival; null where the scheme has
+  /// no sides (the papers').
+  virtual const VoxelGridGl& voxels() const = 0;
+  virtual const gl::Buffer* direct_irradiance() const { return nullptr; }
+  virtual const gl::Buffer* indirect_irradiance() const { return nullptr; }
+  /// Radiance in free space of what sides sent in the last run, in all orders; on the CPU, with what streams in from a
+  /// sky. Light that the screen carries, as the first bounce of `hybrid`, is not in it. Null while an order may be
+  /// under way that the next run goes on with. Made when it is first asked for after a run, and kept until the next,
+  /// between frames: it makes GL objects and may wait for the GPU. Cost: a pass over the volume and more; 64 or 144
+  /// bytes a cell.
+  virtual const RadianceVolumeGl* radiance(gl::PassTimer& timer) const = 0;
   /// Waits for the GPU; after a frame, not in one.
   virtual VolumeReport report() const = 0;
 };

@@ -24,7 +24,11 @@ void SideGatherGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounc
   flux.emitted().bind_storage(GATHERED_EMITTED_SLOT);
   flux.punctual().bind_storage(GATHERED_PUNCTUAL_SLOT);
   first_bounce.clusters.shadow.bind(first_bounce.clusters.maps, program_);
-  if (first_bounce.subdivision != nullptr) first_bounce.subdivision->sublights().bind_storage(SIDE_SUBLIGHTS_SLOT);
+  if (first_bounce.subdivision != nullptr) {
+    first_bounce.subdivision->sublights().bind_storage(SIDE_SUBLIGHTS_SLOT);
+    first_bounce.subdivision->near_lights().bind_storage(SIDE_NEAR_LIGHTS_SLOT);
+  }
+  program_.set("apart", first_bounce.subdivision != nullptr && first_bounce.subdivision->apart() ? 1 : 0);
   program_.set("zone", first_bounce.subdivision != nullptr ? first_bounce.near_zone : 0.0f);
   program_.set("light_count", lights.count());
   program_.use();

@@ -16,6 +16,7 @@ struct FirstBounce {
   const VirtualLightSubdivision* subdivision;  // what lights those near it instead; null: nobody
   float near_zone;                             // areas of a light; 0 without subdivision
   const SkyMaps* sky;  // whose arrival the screen carries, but not its first reflection; or null
+  int sample = 0;      // FrameData::sample
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area

@@ -3,6 +3,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/named_texture.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi::screen {
@@ -23,6 +24,10 @@ class VolumeGather {
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
   size_t bytes() const { return bytes_for(direct_.size()); }
+  void list_textures(std::vector<NamedTexture>& list) const {
+    list_texture(list, name, "direct", direct_);
+    list_texture(list, name, "indirect", indirect_);
+  }
   static size_t bytes_for(glm::ivec2 size) { return size_t(size.x) * size_t(size.y) * 2 * sizeof(glm::vec4); }
 
  private:

@@ -42,12 +42,13 @@ class LightsOnHost {
   }
   /// begin() comes first. @param near_zone  of the subdivision.
   const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightSubdivision* subdivision,
-                                   float near_zone) {
+                                   float near_zone, int sample) {
     const auto count = size_t(lights.count());
     fetch(lights_copy_, count, host_.lights);
     host_.reflected = lights.reflected;
     host_.sublights.clear();
     host_.near_zone = near_zone;
+    host_.sample = sample;
     if (subdivision != nullptr) fetch(sublights_copy_, count * SUBLIGHTS_PER_LIGHT, host_.sublights);
     return host_;
   }
@@ -76,6 +77,26 @@ class LightsOnHost {
   VirtualLightsForSides host_;
   Copy lights_copy_, sublights_copy_;
 };
+
+/// A volume of values by cell as a texture of `layers` volumes stacked in z.
+void upload_cells(const openvdb::Vec3SGrid& from, const openvdb::FloatGrid* fourth, const Grid& grid, int layer,
+                  const gl::Texture& into) {
+  std::vector<glm::vec4> texels(cell_count(grid), glm::vec4(0.0f));
+  for (auto value = from.cbeginValueOn(); value; ++value) {
+    const openvdb::Coord c = value.getCoord();
+    const glm::ivec3 cell(c.x(), c.y(), c.z());
+    if (!shared::cell_inside(grid, cell)) continue;
+    const openvdb::Vec3s v = *value;
+    const float w = fourth != nullptr ? fourth->tree().getValue(c) : 0.0f;
+    texels[size_t(shared::cell_index(grid, cell))] = {v.x(), v.y(), v.z(), w};
+  }
+  glTextureSubImage3D(into.id(), 0, 0, 0, layer * grid.cells.z, grid.cells.x, grid.cells.y, grid.cells.z, GL_RGBA,
+                      GL_FLOAT, texels.data());
+}
+
+void upload_radiance(const RadianceVolume& radiance, const RadianceVolumeGl& into) {
+  for (size_t k = 0; k < radiance.sh.size(); ++k) upload_cells(*radiance.sh[k], nullptr, into.grid, int(k), into.sh);
+}
 
 size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
 
@@ -117,6 +138,7 @@ class SidesOnCpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
+    radiance_is_new_ = false;
     run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
@@ -126,6 +148,7 @@ class SidesOnCpu : public FrameVolume {
     }
     gather_.run(gbuffer, camera, voxels_, direct_, indirect_, false, timer);
   }
+  bool first_is_apart() const override { return options_.bounces.has_value(); }
   bool follow_scene() override {
     if (!follow(scene_, options_, volume_)) return false;
     look_at_geometry();
@@ -133,11 +156,25 @@ class SidesOnCpu : public FrameVolume {
   }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
+  void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
+  const VoxelGridGl& voxels() const override { return voxels_; }
+  const gl::Buffer* direct_irradiance() const override { return &direct_; }
+  const gl::Buffer* indirect_irradiance() const override { return &indirect_; }
+  const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
+    if (options_.passes_per_run) return nullptr;
+    if (radiance_is_new_) return &radiance_;
+    const auto scope = timer.scope("screen/bounces/volume/radiance");
+    const RadianceVolume radiance = volume_.radiance();
+    if (radiance_.sh.id() == 0) radiance_ = RadianceVolumeGl(volume_.grid(), int(radiance.sh.size()));
+    upload_radiance(radiance, radiance_);
+    radiance_is_new_ = true;
+    return &radiance_;
+  }
 
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);
-    r.memory_bytes =
-        volume_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() + gather_.bytes();
+    r.memory_bytes = volume_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() +
+                     radiance_.bytes() + gather_.bytes();
     return r;
   }
 
@@ -155,11 +192,12 @@ class SidesOnCpu : public FrameVolume {
   SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
-        lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->near_zone);
-    const bool apart = options_.bounces.has_value();
+        lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->near_zone, first_bounce->sample);
+    const bool apart = first_is_apart();
     SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart);
     if (const SkyMaps* sky = first_bounce->sky)
-      add_sky(voxels, sky_.irradiance(voxels, *embree_, sky->parts(), sky->version()), apart, flux);
+      add_sky(voxels, sky_.irradiance(voxels, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart,
+              flux);
     return flux;
   }
   static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
@@ -178,25 +216,12 @@ class SidesOnCpu : public FrameVolume {
   VoxelGridGl voxels_;
   gl::Buffer direct_, indirect_;
   VolumeGather gather_;
+  // Of the last run, when it is asked for.
+  mutable RadianceVolumeGl radiance_;
+  mutable bool radiance_is_new_ = false;
 };
 
 constexpr size_t kNormalBytes = sizeof(glm::vec4);  // of a cell, on the GPU
-
-/// A volume of values by cell as a texture of `layers` volumes stacked in z.
-void upload_cells(const openvdb::Vec3SGrid& from, const openvdb::FloatGrid* fourth, const Grid& grid, int layer,
-                  const gl::Texture& into) {
-  std::vector<glm::vec4> texels(cell_count(grid), glm::vec4(0.0f));
-  for (auto value = from.cbeginValueOn(); value; ++value) {
-    const openvdb::Coord c = value.getCoord();
-    const glm::ivec3 cell(c.x(), c.y(), c.z());
-    if (!shared::cell_inside(grid, cell)) continue;
-    const openvdb::Vec3s v = *value;
-    const float w = fourth != nullptr ? fourth->tree().getValue(c) : 0.0f;
-    texels[size_t(shared::cell_index(grid, cell))] = {v.x(), v.y(), v.z(), w};
-  }
-  glTextureSubImage3D(into.id(), 0, 0, 0, layer * grid.cells.z, grid.cells.x, grid.cells.y, grid.cells.z, GL_RGBA,
-                      GL_FLOAT, texels.data());
-}
 
 /// The papers' schemes: spherical harmonics are uploaded.
 class PulseOnCpu : public FrameVolume {
@@ -215,9 +240,7 @@ class PulseOnCpu : public FrameVolume {
     run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return direct_light_.flux(voxels); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
-      const RadianceVolume radiance = volume_.radiance();
-      for (size_t k = 0; k < radiance.sh.size(); ++k)
-        upload_cells(*radiance.sh[k], nullptr, volume_.grid(), int(k), radiance_.sh);
+      upload_radiance(volume_.radiance(), radiance_);
       upload_cells(*volume_.cells().normal, volume_.cells().occupancy.get(), volume_.grid(), 0, normal_occupancy_);
       upload(volume_.voxels(), voxels_);
     }
@@ -231,6 +254,9 @@ class PulseOnCpu : public FrameVolume {
   }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
+  void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
+  const VoxelGridGl& voxels() const override { return voxels_; }
+  const RadianceVolumeGl* radiance(gl::PassTimer& /*timer*/) const override { return &radiance_; }
 
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);

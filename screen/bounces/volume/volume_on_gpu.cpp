@@ -52,7 +52,7 @@ class LitVoxels {
     side_gather_->run(voxels(), first_bounce, flux_, timer);
     if (first_bounce.sky == nullptr) return;
     if (!side_sky_) side_sky_ = std::make_unique<SideSkyGl>();
-    side_sky_->run(voxels(), *first_bounce.sky, flux_, timer);
+    side_sky_->run(voxels(), *first_bounce.sky, flux_, timer, first_bounce.sample);
   }
   /// @return false where the scene's bounds make another grid.
   bool follow_scene() {
@@ -117,6 +117,7 @@ class SidesOnGpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
+    radiance_is_new_ = false;
     if (first_bounce != nullptr) {
       lit_.run(buffers, *first_bounce, timer);
     } else {
@@ -134,9 +135,21 @@ class SidesOnGpu : public FrameVolume {
   }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
+  void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
+  const VoxelGridGl& voxels() const override { return lit_.voxels(); }
+  const gl::Buffer* direct_irradiance() const override { return &irradiance_.direct(); }
+  const gl::Buffer* indirect_irradiance() const override { return &irradiance_.indirect(); }
+  const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
+    if (options_.passes_per_run) return nullptr;
+    if (radiance_is_new_) return &radiance_;
+    const auto scope = timer.scope("screen/bounces/volume/radiance");
+    radiance_ = bounces_.transport().radiance(lit_.voxels(), bounces_.sent(lit_.voxels(), lit_.flux()));
+    radiance_is_new_ = true;
+    return &radiance_;
+  }
   VolumeReport report() const override {
     VolumeReport r = lit_.report(bounce_report_);
-    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + gather_.bytes();
+    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + radiance_.bytes() + gather_.bytes();
     return r;
   }
 
@@ -149,6 +162,9 @@ class SidesOnGpu : public FrameVolume {
   SideIrradianceGl irradiance_;
   VolumeGather gather_;
   BounceReport bounce_report_;
+  // Of the last run, when it is asked for.
+  mutable RadianceVolumeGl radiance_;
+  mutable bool radiance_is_new_ = false;
 };
 
 /// The papers' schemes: a pulse through cells, read from spherical harmonics.
@@ -178,6 +194,9 @@ class PulseOnGpu : public FrameVolume {
   bool follow_scene() override { return lit_.follow_scene(); }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
+  void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
+  const VoxelGridGl& voxels() const override { return lit_.voxels(); }
+  const RadianceVolumeGl* radiance(gl::PassTimer& /*timer*/) const override { return &pulse_.radiance(); }
   VolumeReport report() const override {
     VolumeReport r = lit_.report(bounce_report_);
     r.memory_bytes = lit_.bytes() + cells_.bytes() + pulse_.bytes() + gather_.bytes();

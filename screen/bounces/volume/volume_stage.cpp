@@ -148,15 +148,24 @@ class VolumeStage : public Stage {
       volume_->lights_ready(frame.get<VirtualLightListGl>(), frame.find<VirtualLightSubdivision>(), timer);
   }
   void run(FrameData& frame, gl::PassTimer& timer) override {
+    frame.lend(*volume_);
     if (after_first_bounce_) {
-      const FirstBounce first{frame.get<VirtualLightListGl>(), frame.get<LightClusters>(),
-                              frame.find<VirtualLightSubdivision>(), near_zone_,
-                              takes_sky_ ? frame.find<SkyMaps>() : nullptr};
+      const FirstBounce first{frame.get<VirtualLightListGl>(),
+                              frame.get<LightClusters>(),
+                              frame.find<VirtualLightSubdivision>(),
+                              near_zone_,
+                              takes_sky_ ? frame.find<SkyMaps>() : nullptr,
+                              frame.sample};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
       // What reaches surfaces from emission, or from sky that sides have received, has been reflected before.
       const LightPaths first_paths = takes_sky_ ? LightPaths{emission_first, sky_first} : LightPaths{emission_first};
-      frame.layers.push_back({&volume_->direct(), first_paths});
-      frame.layers.push_back({&volume_->indirect(), {punctual_higher, emission_higher, sky_higher}});
+      const LightPaths later{punctual_higher, emission_higher, sky_higher};
+      if (volume_->first_is_apart()) {
+        frame.layers.push_back({&volume_->direct(), first_paths});
+        frame.layers.push_back({&volume_->indirect(), later});
+      } else {
+        frame.layers.push_back({&volume_->indirect(), first_paths | later});
+      }
       return;
     }
     volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, nullptr, timer);
@@ -186,6 +195,7 @@ class VolumeStage : public Stage {
                    size_t(volume.grid.x) * size_t(volume.grid.y) * size_t(volume.grid.z));
     report.memory_bytes += report.of<VolumeReport>().memory_bytes;
   }
+  void list_textures(std::vector<NamedTexture>& list) const override { volume_->list_textures(list); }
   std::string announcement() const override {
     return fmt::format("volume: on the {}, about {:.1f} MiB", on_gpu_ ? "GPU" : "CPU",
                        double(volume_bytes_expected(scene_, options_, on_gpu_, size_)) / 1048576.0);

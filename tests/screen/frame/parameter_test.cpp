@@ -119,5 +119,27 @@ TEST(Registry, TakesTheFirstRecipeThatTheSettingsAllow) {
   EXPECT_STREQ(default_recipe(o).name, "volume");
 }
 
+TEST(Registry, LeavesStagesOut) {
+  FrameOptions o;
+  apply_recipe("negative", o);
+  o.without = {"visibility/negative"};
+  const Recipe without = recipe_of(o);
+  EXPECT_EQ(without.stages.size() + 1, find_recipe("negative").stages.size());
+  EXPECT_EQ(without.claims, find_recipe("negative").claims);  // it took light away, and added none
+  o.without = {"gather/strided"};
+  EXPECT_FALSE(recipe_of(o).claims.contains(LightPath::punctual_first));
+  o.without = {"bounces/volume"};
+  EXPECT_THROW(recipe_of(o), Error);
+}
+
+TEST(Registry, AParameterGoesBackToUnset) {
+  TypeMap o, fresh;
+  const Parameter& p = find_parameter("vpl.per_light");
+  set_parameter(o, "vpl.per_light=7");
+  ASSERT_TRUE(p.get(o));
+  p.copy(fresh, o);
+  EXPECT_FALSE(p.get(o));
+}
+
 }  // namespace
 }  // namespace volgi::screen

@@ -18,7 +18,9 @@
 layout(local_size_x = LINEAR_GROUP) in;
 layout(std430, binding = GATHERED_EMITTED_SLOT) writeonly buffer Emitted { vec4 emitted_flux[]; };
 layout(std430, binding = GATHERED_PUNCTUAL_SLOT) writeonly buffer Punctual { vec4 punctual_flux[]; };
+layout(std430, binding = SIDE_NEAR_LIGHTS_SLOT) readonly buffer NearLights { NearLight near_lights[]; };
 uniform int light_count;
+uniform int apart;  // as near_lights.glsl has it
 uniform float zone;  // areas of a light near which its sub-lights light instead; 0: none
 
 // Maps are drawn from too far away for what is so near: cells tell what hides it.
@@ -48,14 +50,19 @@ void main() {
     float form = disk_to_point(max(height, 0.0), along, -dot(l.normal, side.normal), squared, l.area_m2);
     if (min(along, height) <= 0.0) form = 0.0;
     float share = far_share(disk_nearness(squared, l.area_m2), zone);
-    if (form <= 0.0 && share >= 1.0) continue;
+    float reach = apart != 0 ? sqrt(2.0 * zone * l.area_m2) + near_lights[index].spread_m : 0.0;
+    bool near = apart != 0 ? squared < reach * reach : share < 1.0;
+    if (form <= 0.0 && !near) continue;
     if (cluster != seen) {
       seen = cluster;
       visibility = area_light_visibility(int(cluster), area_lights[cluster], beside, side.normal);
     }
     vec3 irradiance = l.flux * (visibility * share * form);
-    if (share < 1.0 && reaches(l, side))
-      irradiance += irradiance_of_sublights(Receiver(position, side.normal, side.normal), int(index), 1.0 - share, zone);
+    if (near && reaches(l, side)) {
+      Receiver at = Receiver(position, side.normal, side.normal);
+      irradiance += apart != 0 ? irradiance_of_sublights_apart(at, int(index), l.area_m2, COARSE_SUBLIGHTS, zone)
+                               : irradiance_of_sublights(at, int(index), 1.0 - share, zone);
+    }
     if (l.kind == VIRTUAL_LIGHT_EMITTED) emitted += irradiance;
     else reflected += irradiance;
   }
