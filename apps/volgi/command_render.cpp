@@ -42,6 +42,7 @@ struct RenderCommand {
   int frames = 1;
   std::optional<int> samples;  // none: 1, or 8 without jitter where something is half transparent
   std::string animate;         // T0:T1:FPS; empty: one picture
+  bool whole_animation = false;
   DeviceOptions device;
 
   int run();
@@ -145,12 +146,12 @@ Image RenderCommand::all_samples(screen::Frame& picture, const Scene& loaded, co
   const int count = sample_count(loaded);
   gl::PassTimer untimed(software, false);
   for (int k = 1; k < count; ++k) {
-    picture.set_sample(k, count, samples.has_value());
+    picture.set_sample(k, samples.has_value());
     picture.render(camera, untimed);
     const Image other = screen::image_from_texture(picture.radiance());
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += other.pixels[i];
   }
-  picture.set_sample(0, count, samples.has_value());
+  picture.set_sample(0, samples.has_value());
   for (glm::vec3& p : image.pixels) p /= float(count);
   return image;
 }
@@ -176,7 +177,6 @@ void RenderCommand::light(Scene& loaded, const Camera& camera) const {
 TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer,
                                         bool software) {
   const Camera camera = scene.camera(loaded);
-  picture.set_sample(0, sample_count(loaded), samples.has_value());
   // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a
   // cold frame's, and said to be.
   const int warm_up = frames > 1 ? 2 : 0;
@@ -197,7 +197,6 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
                                             const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer,
                                             bool software) {
   TimedFrames timed{1, false, {}};
-  picture.set_sample(0, sample_count(moving), samples.has_value());
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
     timer.begin_frame();
@@ -242,8 +241,8 @@ int RenderCommand::run() {
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
   check_outputs();
   const SceneSource source(scene.scene_path);
-  const WorldBox box = box_of(source, times);
-  Scene loaded = animate.empty() ? source.at(scene.time_s) : source.at(times.at(0), box);
+  const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
+  Scene loaded = animate.empty() && !whole_animation ? source.at(scene.time_s) : source.at(times.at(0), box);
   frame.volume.fit_grid(loaded, options.of<VolumeOptions>());
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
@@ -289,8 +288,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "--samples", options->samples,
-          "pictures with jittered pixels that are averaged into one (1; where something is half transparent 8, "
-          "all of pixel centres)")
+          "pictures that are averaged into one, each of other points of pixels and other virtual lights (1; where "
+          "something is half transparent 8, all of pixel centres and the same lights)")
       ->check(CLI::Range(1, 4096));
   command->add_flag("--half", options->half, "EXR in 16-bit floats; refuses values above 65504");
   CLI::Option* animate =
@@ -299,6 +298,8 @@ void add_render_command(CLI::App& app, int& exit_code) {
                        "a picture for each frame from T0 to T1 [s], OUT.0000.png and so on; where -o has %04d, there")
           ->type_name("T0:T1:FPS")
           ->excludes(command->get_option("--time"));
+  command->add_flag("--whole-animation", options->whole_animation,
+                    "the volume's grid is around all that moves at any time, not only at those that are rendered");
   command
       ->add_option("--frames", options->frames,
                    "render the same picture this often for times; more than 1: after two warm-up frames")

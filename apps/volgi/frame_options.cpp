@@ -50,6 +50,8 @@ void FrameCommandOptions::add_to(CLI::App& command) {
     command.add_option_function<std::string>(p->flag, keep, screen::help_text(*p))->type_name("N");
   }
   command.add_option("--set", parameters, parameter_help());
+  command.add_option("--without", without, "leaves a stage of --gi out, such as visibility/negative; may be repeated")
+      ->type_name("STAGE");
 }
 
 screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const {
@@ -57,6 +59,7 @@ screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const 
   o.light = LIGHTS.at(light);
   o.size = size;
   o.backend = BACKENDS.at(backend);
+  o.without = without;
   o.bounces = volume.bounces;
   o.of<VolumeOptions>() = volume.volume_options();
   for (const auto& [name, text] : flagged) {
@@ -67,6 +70,12 @@ screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const 
   return o;
 }
 
+bool FrameCommandOptions::given() const {
+  const FrameCommandOptions usual;
+  return !gi.empty() || light != usual.light || backend != usual.backend || !flagged.empty() || !parameters.empty() ||
+         !without.empty() || volume.given();
+}
+
 std::string FrameCommandOptions::technique() const {
   return gi.empty() ? screen::default_recipe(without_recipe(glm::ivec2(1))).name : gi;
 }
@@ -75,7 +84,7 @@ screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
   screen::FrameOptions o = without_recipe(size);
   screen::apply_recipe(technique(), o);
   // Says what does not go together before anything is loaded.
-  for (const screen::StageType* stage : screen::find_recipe(o.recipe).stages) stage->role(o);
+  for (const screen::StageType* stage : screen::recipe_of(o).stages) stage->role(o);
   return o;
 }
 

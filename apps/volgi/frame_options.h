@@ -21,10 +21,13 @@ struct FrameCommandOptions {
   VolumeCommandOptions volume;
   std::map<std::string, std::string> flagged;  // parameters given by an option of their own
   std::vector<std::string> parameters;         // NAME=VALUE
+  std::vector<std::string> without;            // stages
 
   void add_to(CLI::App& command);
   /// @throws Error(usage) for a technique, scheme or parameter that does not exist, naming those that do.
   screen::FrameOptions frame_options(glm::ivec2 size) const;
+  /// Whether anything was asked for.
+  bool given() const;
   /// The technique's name, the default one's too.
   std::string technique() const;
 

@@ -9,6 +9,7 @@
 
 #include "apps/volgi/parse_number.h"
 #include "core/error.h"
+#include "core/light_file.h"
 #include "core/sky.h"
 
 namespace volgi::app {
@@ -84,6 +85,8 @@ void LightOptions::add_to(CLI::App& command) {
       ->type_name("X,Y,Z,I");
   command.add_option("--sun", suns, "a sun more: degrees over the horizon, degrees from -Z towards +X, lux (pi)")
       ->type_name("ELEVATION,AZIMUTH[,LUX]");
+  command.add_option("--lights", lights, "a file of lights in place of all others, as volgi-demo writes it")
+      ->type_name("FILE.json");
   CLI::Option* of_sky =
       command
           .add_option(
@@ -104,7 +107,13 @@ void LightOptions::add_to(CLI::App& command) {
       ->capture_default_str();
 }
 
-void LightOptions::set_sky(Scene& scene) const {
+void LightOptions::set_sky(const std::string& text, double rotate_deg) {
+  sky = text;
+  sky_rotate_deg = rotate_deg;
+  made_sky_.reset();
+}
+
+void LightOptions::put_sky(Scene& scene) const {
   if (sky.empty()) return;
   const bool clear = sky.starts_with(kClearSky);
   if (clear) {
@@ -131,8 +140,9 @@ void LightOptions::apply(Scene& scene) const {
   for (Light& light : scene.lights) light.intensity *= float(lamp_scale);
   for (const std::string& text : lamps) scene.lights.push_back(lamp_of(text, scene));
   for (const std::string& text : suns) scene.lights.push_back(sun_of(text));
-  set_sky(scene);
+  put_sky(scene);
   for (Material& m : scene.materials) m.lambertian = materials == "lambert";
+  if (!lights.empty()) apply_light_file(read_light_file(lights, scene.world_origin), lights, scene);
 }
 
 }  // namespace volgi::app

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,21 +16,24 @@ namespace volgi::app {
 std::vector<double> parse_numbers(std::string_view text);
 
 /// What light and matter a command adds to a scene's own: --lamp, --sun, --sky, --sky-rotate, --lamp-scale,
-/// --materials.
+/// --materials, --lights.
 struct LightOptions {
   std::vector<std::string> lamps, suns;
   std::string sky;
   double sky_rotate_deg = 0.0;
   double lamp_scale = 1.0;
   std::string materials = "gltf";
+  std::filesystem::path lights;  // core/light_file.h; empty: those of the scene
 
+  /// --sky and --sky-rotate in place of those that there are.
+  void set_sky(const std::string& text, double rotate_deg);
   void add_to(CLI::App& command);
   /// Once after every SceneSource::at() or move().
   /// @throws Error(usage) naming the text that says nothing, Error(bad_input) as read_sky().
   void apply(Scene& scene) const;
 
  private:
-  void set_sky(Scene& scene) const;
+  void put_sky(Scene& scene) const;
   mutable std::shared_ptr<const Sky> made_sky_;  // read or made once
 };
 

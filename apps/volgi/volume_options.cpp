@@ -74,6 +74,12 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
   command.add_option("--threads", threads, "threads of the CPU (all)")->check(CLI::Range(1, 1024));
 }
 
+bool VolumeCommandOptions::given() const {
+  const VolumeCommandOptions usual;
+  return scheme != usual.scheme || bounces || iterations || directions || sh_order != usual.sh_order || grid_cells ||
+         !memory_limit.empty();
+}
+
 VolumeOptions VolumeCommandOptions::volume_options() const {
   VolumeOptions o;
   if (grid_cells) o.grid_cells = *grid_cells;

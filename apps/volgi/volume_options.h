@@ -21,6 +21,8 @@ struct VolumeCommandOptions {
   std::string memory_limit;  // bytes, with K, M or G
 
   void add_to(CLI::App& command);
+  /// Whether anything but threads was asked for.
+  bool given() const;
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
   /// Where --grid is not given: cells that suit the scene (automatic_grid_cells()).
