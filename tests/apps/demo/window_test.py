@@ -1,0 +1,1121 @@
+#!/usr/bin/python3
+"""volgi-demo as a person uses it: keys and a mouse on a display of its own (Xvfb), files that are dropped, windows that
+come and go; and the program without a window.
+
+    window_test.py VOLGI_DEMO VOLGI X11_HAND SOURCE_FOLDER [CASE...]
+
+Exit code 77 (skipped) where Xvfb or xdotool is missing, or X11_HAND was not built; a failure with VOLGI_REQUIRE_GL.
+What the window does is read from its --events: nothing here waits for time to pass, but for what is to happen, for a
+minute at most.
+    VOLGI_LONG=1          the case Memory plays 2,000 frames
+    VOLGI_KEEP=FOLDER     keeps what the cases have written
+    CASE Times            prints how fast the window is; not among the others
+"""
+import json
+import math
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+
+SKIPPED = 77
+LONGEST_S = 60.0
+ORDER = ("demo", "volgi", "hand", "source")
+
+
+class Given:
+    """The command line."""
+
+
+def scene(name):
+    return Given.source / "data" / f"{name}.glb"
+
+
+# Pictures in a few hundredths of a second on a software rasterizer.
+QUICK = ["--grid", "12", "--set", "vpl.count=128", "--set", "val.count=16", "--set", "val.map=64", "--set",
+         "val.exact=2", "--set", "shadow.spot=256", "--set", "shadow.cube=128", "--set", "shadow.sun=256", "--set",
+         "sky.parts=16", "--set", "sky.map=64", "--set", "sky.exact=2", "--set", "negative.count=32"]
+# Within the Cornell box, which fills the picture then.
+# Each picture is rendered once, at its size.
+STILL = {"progressive": False, "motion_fps": 0}
+INSIDE = "look 0,1,1.9 0,0.9,-1 60"
+
+
+# --- pictures -------------------------------------------------------------------------------------------------------
+
+
+class Picture:
+    def __init__(self, width, height, rgb):
+        self.width, self.height, self.rgb = width, height, rgb
+
+    def part(self, left, top, right, bottom):
+        """By shares of the size."""
+        x0, x1 = round(left * self.width), round(right * self.width)
+        y0, y1 = round(top * self.height), round(bottom * self.height)
+        rows = [self.rgb[3 * (y * self.width + x0):3 * (y * self.width + x1)] for y in range(y0, y1)]
+        return Picture(x1 - x0, y1 - y0, b"".join(rows))
+
+    def spread(self):
+        """Standard deviation of the bytes."""
+        mean = sum(self.rgb) / len(self.rgb)
+        return math.sqrt(sum((v - mean) ** 2 for v in self.rgb) / len(self.rgb))
+
+    def distance(self, other):
+        """Mean difference of the bytes."""
+        assert (self.width, self.height) == (other.width, other.height)
+        return sum(abs(a - b) for a, b in zip(self.rgb, other.rgb)) / len(self.rgb)
+
+
+def read_ppm(data):
+    magic, width, height, _ = data.split(None, 4)[:4]
+    assert magic == b"P6"
+    width, height = int(width), int(height)
+    return Picture(width, height, data[-3 * width * height:])
+
+
+def read_png(path):
+    """Of 8 bits a channel, not interlaced."""
+    data = pathlib.Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", f"{path} is no PNG"
+    at, packed = 8, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height, depth, colour = struct.unpack(">IIBB", data[at + 8:at + 18])
+        elif kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += length + 12
+    assert depth == 8 and colour in (2, 6)
+    channels = 3 if colour == 2 else 4
+    raw, stride = zlib.decompress(packed), width * channels
+    before, rows = bytearray(stride), []
+    for y in range(height):
+        kind = raw[y * (stride + 1)]
+        row = bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for x in range(stride):
+            left = row[x - channels] if x >= channels else 0
+            up, corner = before[x], before[x - channels] if x >= channels else 0
+            if kind == 1:
+                row[x] = row[x] + left & 255
+            elif kind == 2:
+                row[x] = row[x] + up & 255
+            elif kind == 3:
+                row[x] = row[x] + (left + up) // 2 & 255
+            elif kind == 4:
+                a, b, c = abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)
+                row[x] = row[x] + (left if a <= b and a <= c else up if b <= c else corner) & 255
+        before = row
+        rows.append(bytes(row) if channels == 3 else bytes(v for k, v in enumerate(row) if k % 4 != 3))
+    return Picture(width, height, b"".join(rows))
+
+
+# --- scenes ---------------------------------------------------------------------------------------------------------
+
+
+def write_triangle_room(path, light):
+    """Two triangles as a floor, with a camera over it; without light where there is to be none."""
+    corners = struct.pack("<12f", -1, 0, -1, 1, 0, -1, 1, 0, 1, -1, 0, 1)
+    faces = struct.pack("<6H", 0, 2, 1, 0, 3, 2)
+    wall = struct.pack("<12f", -1, 0, -1, 1, 0, -1, 1, 2, -1, -1, 2, -1)
+    front = struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+    chunks, views = b"", []
+    for part in (corners, faces, wall, front):
+        views.append({"buffer": 0, "byteOffset": len(chunks), "byteLength": len(part)})
+        chunks += part + b"\0" * (-len(part) % 4)
+    nodes = [{"mesh": 0}, {"camera": 0, "translation": [0, 1, 3]}]
+    gltf = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(2 + light))}], "nodes": nodes,
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1},
+                                   {"attributes": {"POSITION": 2}, "indices": 3}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, 0, -1], "max": [1, 0, 1]},
+            {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"},
+            {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC3", "min": [-1, 0, -1], "max": [1, 2, -1]},
+            {"bufferView": 3, "componentType": 5123, "count": 6, "type": "SCALAR"}],
+        "bufferViews": views, "buffers": [{"byteLength": len(chunks)}],
+    }
+    if light:
+        gltf["extensionsUsed"] = ["KHR_lights_punctual"]
+        gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5}]}}
+        nodes.append({"translation": [0, 1.5, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    path.write_bytes(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(chunks)) +
+                     struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(chunks), b"BIN\0") +
+                     chunks)
+    return path
+
+
+# --- a display, and the window on it --------------------------------------------------------------------------------
+
+
+class Display:
+    def __init__(self):
+        read, write = os.pipe()
+        # -r: a key that a slow machine holds does not repeat.
+        self.process = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1024x768x24", "-r",
+                                         "-noreset", "-nolisten", "tcp"], pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as answer:
+            self.number = answer.readline().strip()
+        if not self.number:
+            raise RuntimeError("Xvfb does not start")
+
+    def environment(self):
+        return {**os.environ, "DISPLAY": f":{self.number}"}
+
+    def close(self):
+        self.process.terminate()
+        self.process.wait()
+
+
+class Window:
+    """A running volgi-demo."""
+
+    def __init__(self, display, folder, *arguments, size="320x200", settings=None, panel=False, quick=True):
+        self.folder, self.environment = folder, display.environment()
+        self.settings = folder / "settings.json"
+        if settings is None:
+            settings = {"volgi_demo": 1, "picture": STILL}
+        if settings:
+            self.settings.write_text(json.dumps(settings))
+        self.events_path = folder / f"events{len(list(folder.glob('events*')))}.jsonl"
+        self.errors = open(self.events_path.with_suffix(".stderr"), "w+")
+        command = [Given.demo, *map(str, arguments), "--events", self.events_path, "--settings", self.settings,
+                   "--pictures", folder, "--size", size, *(QUICK if quick else [])]
+        if not panel:
+            command += ["--do", "panel"]
+        self.started = time.monotonic()
+        self.process = subprocess.Popen(command, env=self.environment, stderr=self.errors, cwd=folder)
+        self.events, self.unread = [], ""
+        self.file = None
+        self.wait("first_picture")
+        self.handle = self.tool("search", "--onlyvisible", "--name", "^volgi").split()[-1]
+        self.tool("windowfocus", "--sync", self.handle)
+        if not panel:
+            width = int(size.split("x")[0])
+            self.wait("frame", lambda e: e["size"][0] == width)
+
+    # Events
+
+    def read(self):
+        if self.file is None and self.events_path.exists():
+            self.file = open(self.events_path)
+        if self.file is None:
+            return
+        self.unread += self.file.read()
+        *lines, self.unread = self.unread.split("\n")
+        self.events += [json.loads(line) for line in lines]
+
+    def mark(self):
+        """What happens from here on."""
+        self.read()
+        return len(self.events)
+
+    def find(self, name, where=None, since=0):
+        self.read()
+        return next((e for e in self.events[since:] if e["event"] == name and (where is None or where(e))), None)
+
+    def wait(self, name, where=None, since=0, longest=LONGEST_S):
+        end = time.monotonic() + longest
+        while time.monotonic() < end:
+            ended = self.process.poll() is not None
+            event = self.find(name, where, since)
+            if event is not None:
+                return event
+            if ended:
+                break
+            time.sleep(0.01)
+        raise AssertionError(f"no event '{name}' (exit code {self.process.poll()}); the last ones: "
+                             f"{self.events[-4:]}; {self.said()}")
+
+    def wait_for(self, what, condition, longest=LONGEST_S):
+        end = time.monotonic() + longest
+        while time.monotonic() < end:
+            value = condition()
+            if value:
+                return value
+            if self.process.poll() is not None:
+                break
+            time.sleep(0.02)
+        raise AssertionError(f"{what} (exit code {self.process.poll()}); {self.said()}; {self.events[-4:]}")
+
+    def last(self, name="frame"):
+        self.read()
+        return next(e for e in reversed(self.events) if e["event"] == name)
+
+    def said(self):
+        self.errors.flush()
+        self.errors.seek(0)
+        return self.errors.read()
+
+    # A person
+
+    def tool(self, *arguments):
+        return subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, check=True, text=True,
+                              stdout=subprocess.PIPE, timeout=LONGEST_S).stdout
+
+    def key(self, *names):
+        mark = self.mark()
+        self.tool("key", *names)
+        return mark
+
+    def key_for_frame(self, name, where=None):
+        return self.wait("frame", where, self.key(name))
+
+    def command(self, line):
+        """Through the palette. @returns since when."""
+        mark = self.key("ctrl+p")
+        self.wait("keyboard", lambda e: e["of"] == "text", mark)
+        entered = self.mark()
+        self.tool("type", "--delay", "1", line)
+        self.tool("key", "Return")
+        self.wait("keyboard", lambda e: e["of"] != "text", entered)
+        return mark
+
+    def command_for_frame(self, line, where=None):
+        return self.wait("frame", where, self.command(line))
+
+    def pointer(self, x, y):
+        self.tool("mousemove", "--window", self.handle, x, y)
+
+    def orbit(self):
+        """Until the camera has moved: what happens within one slow frame is one event."""
+        eye = self.last()["eye"]
+        self.pointer(60, 50)
+        self.tool("mousedown", 1)
+        for step in range(1, 200):
+            mark = self.mark()
+            self.pointer(60 + 3 * step % 60, 50 + step % 20)
+            time.sleep(0.05)
+            if self.find("frame", lambda e: math.dist(e["eye"], eye) > 0.1, mark):
+                break
+        self.tool("mouseup", 1)
+        assert math.dist(self.last()["eye"], eye) > 0.1, f"the mouse does not turn the camera: {self.last()}"
+        self.settle()
+
+    def settle(self):
+        """Until there are no more frames."""
+        count = -1
+        while count != self.last()["frames"]:
+            count = self.last()["frames"]
+            time.sleep(1.0)
+
+    # A desktop
+
+    def hand(self, *arguments):
+        return subprocess.run([Given.hand, self.handle, *map(str, arguments)], env=self.environment,
+                              stdout=subprocess.PIPE, timeout=2 * LONGEST_S)
+
+    def picture(self):
+        result = self.hand("picture")
+        assert result.returncode == 0, "the window shows nothing"
+        return read_ppm(result.stdout)
+
+    def undisturbed(self):
+        """Where no messages are: right of their longest lines."""
+        return self.picture().part(0.74, 0.0, 1.0, 1.0)
+
+    def quit(self):
+        """@returns how many OpenGL errors there were."""
+        self.key("ctrl+q")
+        end = self.wait("end")
+        assert self.process.wait(LONGEST_S) == 0
+        return end["gl_errors"]
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+        self.process.wait()
+        self.errors.close()
+        if self.file:
+            self.file.close()
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        kept = os.environ.get("VOLGI_KEEP")
+        self.folder = pathlib.Path(kept, self.id()) if kept else pathlib.Path(tempfile.mkdtemp(prefix="volgi_window_"))
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if not kept:
+            self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def demo(self, *arguments, **more):
+        """Without a window."""
+        return subprocess.run([Given.demo, *map(str, arguments)], text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, timeout=300, cwd=self.folder, **more)
+
+    def assert_one_line(self, text, *parts):
+        self.assertEqual(len(text.strip().splitlines()), 1, text)
+        for part in parts:
+            self.assertIn(part, text)
+
+
+class WindowCase(Case):
+    """One display for all windows of a run."""
+    display = None
+
+    @classmethod
+    def setUpClass(cls):
+        if WindowCase.display is None:
+            WindowCase.display = Display()
+
+    def window(self, *arguments, **more):
+        window = Window(self.display, self.folder, *arguments, **more)
+        self.addCleanup(window.close)
+        return window
+
+
+# --- cases ----------------------------------------------------------------------------------------------------------
+
+
+class Views(WindowCase):
+    KEYS = {"1": "picture", "2": "direct", "3": "first_bounce", "4": "higher_bounces", "5": "emission", "6": "albedo",
+            "7": "normals", "8": "depth", "9": "voxels", "0": "coverage", "shift+1": "lobe", "shift+2": "lights",
+            "shift+3": "clusters", "shift+4": "cluster_maps", "shift+6": "low_resolution", "shift+7": "texture"}
+
+    def shown(self, window, key, view, *others):
+        """Opens a view; it is neither blank nor like another one."""
+        window.key_for_frame(key, lambda e: e["view"] == view)
+        end = time.monotonic() + 10.0
+        while True:
+            picture = window.picture()
+            distances = [picture.distance(other) for other in others]
+            if picture.spread() > 8.0 and min(distances, default=9.0) > 1.0:
+                return picture
+            self.assertLess(time.monotonic(), end, f"{view}: spread {picture.spread()}, from the others {distances}")
+
+    def test_every_view_opens_by_its_key(self):
+        window = self.window(scene("cornell"), "--do", "emission 0 0.1,0.3,0.2")
+        window.key_for_frame("6")
+        seen = []
+        for key, view in self.KEYS.items():
+            with self.subTest(view=view):
+                seen.append(self.shown(window, key, view, *seen))
+        self.assertEqual(window.quit(), 0)
+
+    def test_negative_lights(self):
+        window = self.window(scene("cornell"), "--gi", "negative")
+        self.shown(window, "shift+5", "negative_lights", window.picture())
+        self.assertEqual(window.quit(), 0)
+
+    def test_a_view_that_the_recipe_lacks_shows_something(self):
+        window = self.window(scene("cornell"), "--gi", "none")
+        for key, view in (("9", "voxels"), ("shift+2", "lights"), ("shift+5", "negative_lights")):
+            window.key_for_frame(key, lambda e: e["view"] == view)
+        self.assertGreater(window.picture().spread(), 8.0)
+        self.assertEqual(window.quit(), 0)
+
+    def test_layers_and_textures(self):
+        window = self.window(scene("cornell"), "--view", "cluster_maps")
+        seen = [window.picture()]
+        for key in ("bracketright", "bracketright", "bracketleft", "bracketleft"):
+            window.key(key)
+            window.wait_for(f"{key}: the cluster looks the same", lambda: window.picture().distance(seen[-1]) > 0.1)
+            seen.append(window.picture())
+        self.assertEqual(seen[0].distance(seen[4]), 0.0)
+        self.assertGreater(seen[0].distance(seen[2]), 0.1)
+        self.assertIsNone(window.find("error"))
+        window.command_for_frame("texture gbuffer")
+        self.assertEqual(window.quit(), 0)
+
+
+def stages_of(recipe):
+    """As the program names them when it is asked for one that there is not."""
+    command = [Given.volgi, "render", scene("cornell"), "-o", "never.exr", "--size", "8x8", "--gi", recipe, "--without",
+               "nonsense"]
+    text = subprocess.run(command, stderr=subprocess.PIPE, text=True).stderr
+    return re.search(r"it has (.*)", text)[1].split(", ")
+
+
+class Stages(WindowCase):
+    def toggled(self, window, stage):
+        """Off and on again."""
+        before = window.undisturbed()
+        line = f"stage {stage} toggle"
+        mark = window.command(line)
+        window.wait_for(f"{line}: neither another picture nor a message", lambda: window.find(
+            "error", None, mark) or (window.find("frame", None, mark) and window.undisturbed().distance(before) > 0.0))
+        refused = window.find("error", None, mark)
+        if refused:
+            self.assertNotIn("no command", refused["text"])
+            self.assertEqual(window.undisturbed().distance(before), 0.0, f"{line} was refused: {refused}")
+            return
+        window.command_for_frame(line)
+        window.wait_for(f"{line} twice: not the picture that was there before: {window.events[-3:]}",
+                        lambda: window.undisturbed().distance(before) < 0.05)
+
+    def of_recipes(self, recipes, *light):
+        window = self.window(scene("cornell"), *light, "--exposure", "1", "--do", INSIDE)
+        for recipe in recipes:
+            window.command_for_frame(f"recipe {recipe}", lambda e: e["recipe"] == recipe)
+            for stage in stages_of(recipe):
+                with self.subTest(recipe=recipe, stage=stage):
+                    self.toggled(window, stage)
+        self.assertEqual(window.quit(), 0)
+
+    def test_hybrid_and_volume(self):
+        self.of_recipes(["hybrid", "volume"], "--sky", "0.5,0.7,0.9")
+
+    def test_one_bounce(self):
+        self.of_recipes(["val", "negative", "vpl", "none"], "--sky", "0.5,0.7,0.9")
+
+    def test_lpv(self):
+        self.of_recipes(["lpv"])
+
+    def test_key_goes_through_all_recipes(self):
+        window = self.window(scene("cornell"))
+        first = window.last()["recipe"]
+        seen = []
+        while first not in seen:
+            now = window.last()["recipe"]
+            seen.append(window.key_for_frame("g", lambda e: e["recipe"] != now)["recipe"])
+            self.assertLess(len(seen), 20)
+        self.assertGreaterEqual(len(set(seen)), 7)
+        window.key_for_frame("shift+g", lambda e: e["recipe"] == seen[-2])
+        self.assertEqual(window.quit(), 0)
+
+
+class Light(WindowCase):
+    SIZE = (320, 200)
+    YFOV, EYE = 0.6981317007977318, (0.0390625, 1.0234375, 3.90625)  # of data/cornell.glb, along -Z
+    LAMP = (0.0, 1.96875, 0.0)
+
+    def pixel_size_m(self):
+        return 2.0 * math.tan(0.5 * self.YFOV) * (self.EYE[2] - self.LAMP[2]) / self.SIZE[1]
+
+    def test_dragged_by_its_mark(self):
+        window = self.window(scene("cornell"))
+        pixel = self.pixel_size_m()
+        x = round(0.5 * self.SIZE[0] + (self.LAMP[0] - self.EYE[0]) / pixel)
+        y = round(0.5 * self.SIZE[1] - (self.LAMP[1] - self.EYE[1]) / pixel)
+        before = window.undisturbed()
+        mark = window.mark()
+        window.pointer(x, y)
+        window.tool("mousedown", 1)
+        start = window.wait("light", None, mark)["at"]
+        way = (25, 40)
+        mark = window.mark()
+        window.pointer(x + way[0], y + way[1])
+        window.wait("frame", None, mark)
+        window.tool("mouseup", 1)
+        expected = (start[0] + way[0] * pixel, start[1] - way[1] * pixel, start[2])
+        end = window.wait("light", None, mark)["at"]
+        self.assertLess(math.dist(end, expected), pixel, f"{start} -> {end}, not {expected}; {pixel} m a pixel")
+        window.wait_for("the picture does not follow the light", lambda: window.undisturbed().distance(before) > 1.0)
+        # The mark went along: taken again where it is now, and let go without a move.
+        eye = window.last()["eye"]
+        mark = window.mark()
+        window.pointer(x + way[0], y + way[1])
+        window.tool("mousedown", 1)
+        window.pointer(x, y)
+        window.wait("light", lambda e: math.dist(e["at"], start) < pixel, mark)
+        window.tool("mouseup", 1)
+        self.assertEqual(window.last()["eye"], eye)
+        self.assertEqual(window.quit(), 0)
+
+    def test_taken_added_and_deleted_by_keys(self):
+        window = self.window(scene("cornell"))
+        window.wait("light", lambda e: e["light"] == 0, window.key("l"))
+        dark = window.key_for_frame("Delete")
+        self.assertEqual(dark["triangles"], window.last()["triangles"])
+        window.command_for_frame("light add point")
+        self.assertEqual(window.last("light")["light"], 0)
+        window.command_for_frame("light at 0.2,1.5,0.3")
+        # Told in the frame that is centred on the scene, 1 m over its floor.
+        window.wait("light", lambda e: math.dist(e["at"], (0.2, 0.5, 0.3)) < 0.1)
+        window.command_for_frame("light reset")
+        self.assertEqual(window.quit(), 0)
+
+
+class Camera(WindowCase):
+    def test_every_way_to_move_it(self):
+        window = self.window(scene("cornell"))
+        start = window.last()["eye"]
+        window.pointer(160, 110)  # the far wall is under it
+        mark = window.mark()
+        window.tool("click", 4)
+        near = window.wait("frame", lambda e: e["eye"][2] < start[2] - 0.1, mark)["eye"]
+        mark = window.mark()
+        window.tool("click", 5)
+        back = window.wait("frame", lambda e: e["eye"][2] > near[2] + 0.1, mark)["eye"]
+        self.assertLess(math.dist(back, start), 0.05)
+        for key, axis, sign in (("w", 2, -1), ("s", 2, 1), ("d", 0, 1), ("a", 0, -1), ("e", 1, 1), ("q", 1, -1)):
+            before = window.last()["eye"]
+            window.tool("keydown", key)
+            window.wait("frame", lambda e: sign * (e["eye"][axis] - before[axis]) > 0.02)
+            window.tool("keyup", key)
+            window.settle()
+            moved = [b - a for a, b in zip(before, window.last()["eye"])]
+            self.assertEqual(max(range(3), key=lambda k: abs(moved[k])), axis, f"{key}: {moved}")
+        before = window.last()["eye"]
+        window.pointer(100, 120)
+        window.tool("mousedown", 2)
+        for step in range(1, 100):
+            window.pointer(100 + step % 60, 120)
+            if window.last()["eye"][0] < before[0] - 0.05:  # the scene follows the hand to the right
+                break
+            time.sleep(0.05)
+        window.tool("mouseup", 2)
+        window.settle()
+        self.assertLess(window.last()["eye"][0], before[0] - 0.05)
+        self.assertAlmostEqual(window.last()["eye"][1], before[1], places=3)
+        self.assertLess(math.dist(window.key_for_frame("c")["eye"], start), 1e-5)
+        mark = window.command("look 0.5,1,3 0,1,0 50")
+        window.wait("frame", lambda e: math.dist(e["eye"], (0.5, 0.0, 3.0)) < 1e-3, mark)
+        window.key_for_frame("f", lambda e: e["eye"][2] > 3.2)
+        self.assertEqual(window.quit(), 0)
+
+    def test_recorded_and_replayed(self):
+        window = self.window(scene("cornell"))
+        window.key("v")
+        window.tool("keydown", "s")
+        window.wait("frame", lambda e: e["eye"][2] > 4.3)
+        window.tool("keyup", "s")
+        end = window.wait("message", lambda e: e["text"].startswith("recorded"), window.key("v"))
+        self.assertIn("keys", end["text"])
+        window.settle()
+        far = window.last()["eye"]
+        window.key_for_frame("c", lambda e: e["eye"][2] < 4.0)
+        window.key_for_frame("shift+v", lambda e: math.dist(e["eye"], far) < 0.02)
+        self.assertEqual(window.quit(), 0)
+
+
+class Drop(WindowCase):
+    def setUp(self):
+        super().setUp()
+        self.room = write_triangle_room(self.folder / "a rööm 100%.glb", light=True)
+
+    def test_dropped_files(self):
+        window = self.window(scene("cornell"))
+        cornell = window.last()["triangles"]
+        mark = window.mark()
+        self.assertEqual(window.hand("drop", self.room).returncode, 0)
+        window.wait("frame", lambda e: e["triangles"] == 4, mark)
+        mark = window.mark()
+        window.tool("keydown", "shift")
+        self.assertEqual(window.hand("drop", scene("cornell")).returncode, 0)
+        window.wait("frame", lambda e: e["triangles"] == 4 + cornell, mark)
+        window.tool("keyup", "shift")
+        # Two at once with Shift, and none is lost.
+        mark = window.mark()
+        window.tool("keydown", "shift")
+        self.assertEqual(window.hand("drop", self.room, self.room).returncode, 0)
+        window.wait("frame", lambda e: e["triangles"] == 12 + cornell, mark)
+        window.tool("keyup", "shift")
+        self.assertEqual(window.quit(), 0)
+
+    def test_what_cannot_be_read_leaves_the_old_scene(self):
+        window = self.window(scene("cornell"), "--exposure", "1")
+        before, triangles = window.undisturbed(), window.last()["triangles"]
+        broken, missing = self.folder / "broken.glb", self.folder / "missing.glb"
+        broken.write_bytes(scene("cornell").read_bytes()[:3000])
+        for file in (broken, missing, self.folder):
+            for shift in (False, True):
+                mark = window.mark()
+                if shift:
+                    window.tool("keydown", "shift")
+                self.assertEqual(window.hand("drop", file).returncode, 0)
+                error = window.wait("error", None, mark)
+                if shift:
+                    window.tool("keyup", "shift")
+                self.assertIn(file.name, error["text"])
+        self.assertEqual(window.undisturbed().distance(before), 0.0)
+        self.assertEqual(window.key_for_frame("6")["triangles"], triangles)
+        self.assertEqual(window.quit(), 0)
+
+
+class Desktop(WindowCase):
+    """What a window has to live with."""
+
+    def test_resized(self):
+        window = self.window(scene("cornell"))
+        for width, height in ((1, 1), (200, 1), (1, 150), (333, 217), (320, 200)):
+            mark = window.mark()
+            window.tool("windowsize", window.handle, width, height)
+            window.wait("frame", lambda e: e["size"] == [width, height], mark)
+        window.wait_for("the picture is blank", lambda: window.picture().spread() > 8.0)
+        mark = window.key("Tab")  # panels take half of a small window
+        window.wait("frame", lambda e: e["size"] == [160, 200], mark)
+        for width, height in ((1, 1), (320, 200)):
+            mark = window.mark()
+            window.tool("windowsize", window.handle, width, height)
+            window.wait("frame", lambda e: e["size"] == [max(1, width - width // 2), height], mark)
+        self.assertEqual(window.quit(), 0)
+
+    def test_minimised_and_restored(self):
+        window = self.window("builtin:metaballs", "--do", "play on")
+        window.wait("frame", lambda e: e["time"] > 0.0)
+        window.hand("minimise")
+        window.settle()  # an animation, and no frames
+        mark = window.mark()
+        window.hand("restore")
+        window.wait("frame", None, mark)
+        window.wait_for("the picture is blank", lambda: window.picture().spread() > 8.0)
+        window.tool("windowfocus", "--sync", window.handle)
+        self.assertEqual(window.quit(), 0)
+
+    def test_goes_on_without_the_keyboard(self):
+        window = self.window("builtin:metaballs", "--do", "play on")
+        window.tool("keydown", "w")  # is held when the keyboard goes, and must not fly on for ever
+        window.wait("frame", lambda e: math.dist(e["eye"], window.events[-1].get("eye", e["eye"])) >= 0.0)
+        window.hand("blur")
+        now = window.last()["frames"]
+        window.wait("frame", lambda e: e["frames"] > now + 5)
+        window.tool("keyup", "w")
+        one = window.last()
+        later = window.wait("frame", lambda e: e["frames"] > one["frames"] + 3)
+        self.assertEqual(one["eye"], later["eye"])
+        window.tool("windowfocus", "--sync", window.handle)
+        window.key_for_frame("6", lambda e: e["view"] == "albedo")
+        self.assertEqual(window.quit(), 0)
+
+    def test_fullscreen_and_back(self):
+        window = self.window(scene("cornell"), "--gi", "none")
+        window.key_for_frame("F11", lambda e: e["size"] == [1024, 768])
+        window.key_for_frame("F11", lambda e: e["size"] == [320, 200])
+        self.assertEqual(window.quit(), 0)
+
+
+class Screenshots(WindowCase):
+    SIZE = "160x100"
+    PERCENT = 0.1  # relative RMSE
+
+    def shot(self, window):
+        """Key P, and the command beside the picture: it makes the same one."""
+        mark = window.key("p")
+        text = window.wait("message", lambda e: e["text"].startswith("wrote "), mark)["text"]
+        name = pathlib.Path(re.match(r"wrote (.*)\.png, \.exr and \.txt", text)[1])
+        png = read_png(name.with_suffix(".png"))
+        self.assertGreater(png.spread(), 8.0)
+        command = shlex.split(name.with_suffix(".txt").read_text())
+        self.assertEqual(command[:2], ["volgi", "render"])
+        again = name.with_name(name.name + "-again")
+        for ending in (".exr", ".png"):
+            command[command.index("-o") + 1] = str(again) + ending
+            done = subprocess.run([Given.volgi, *command[1:], "--quiet"], text=True, stderr=subprocess.PIPE,
+                                  cwd=self.folder, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        figures = json.loads(subprocess.run(
+            [Given.volgi, "compare", f"{name}.exr", f"{again}.exr", "--region", "all", "--json"], text=True, check=True,
+            stdout=subprocess.PIPE).stdout)[0]
+        self.assertLess(figures["rmse_pct"], self.PERCENT, f"{command}: {figures}")
+        self.assertLess(read_png(f"{again}.png").distance(png), 0.5, command)
+        return command
+
+    def test_cornell(self):
+        window = self.window(scene("cornell"), size=self.SIZE)
+        first = self.shot(window)
+        self.assertIn("--camera", first)
+        window.orbit()
+        turned = self.shot(window)
+        self.assertIn("--eye", turned)
+        window.command_for_frame("set vpl.count=64")
+        self.assertIn("vpl.count=64", self.shot(window))
+        window.command_for_frame("bounces 2")
+        self.shot(window)
+        window.key("l")
+        window.command_for_frame("light move 0.3,-0.4,0.2")
+        self.assertIn("--lights", self.shot(window))
+        window.command_for_frame("sky sun:35,120")
+        self.shot(window)
+        self.assertEqual(window.quit(), 0)
+
+    def test_average(self):
+        settings = {"volgi_demo": 1, "picture": {"progressive": True, "most_samples": 4, "motion_fps": 1000}}
+        window = self.window(scene("cornell"), size=self.SIZE, settings=settings)
+        window.wait("frame", lambda e: e["samples"] == 4 and e["size"] == [160, 100])
+        command = self.shot(window)
+        self.assertEqual(command[command.index("--samples") + 1], "4")
+        # What moves has fewer pixels; what is written has not.
+        window.orbit()
+        window.wait("frame", lambda e: e["samples"] == 4, window.mark() - 1)
+        command = self.shot(window)
+        self.assertEqual(command[command.index("--size") + 1], self.SIZE)
+        self.assertEqual(command[command.index("--samples") + 1], "4")
+        self.assertEqual(window.quit(), 0)
+
+    def test_animation(self):
+        window = self.window("builtin:metaballs", "--time", "0.7", size=self.SIZE)
+        self.assertIn("0.7", self.shot(window))
+        window.command_for_frame("time 1.3")
+        self.shot(window)
+        self.assertEqual(window.quit(), 0)
+
+    def test_a_scene_without_light(self):
+        window = self.window(write_triangle_room(self.folder / "dark room.glb", light=False), size=self.SIZE)
+        window.wait("message", lambda e: "no light" in e["text"])
+        self.shot(window)
+        window.orbit()
+        self.shot(window)
+        self.assertEqual(window.quit(), 0)
+
+
+class SettingsFile(WindowCase):
+    def test_comes_back(self):
+        before = {"volgi_demo": 1, "picture": {**STILL, "of_the_future": 7}, "new": {"thing": [1, 2]}}
+        window = self.window(scene("cornell"), settings=before, quick=False, panel=True)
+        window.key_for_frame("7", lambda e: e["view"] == "normals")
+        window.key_for_frame("g", lambda e: e["recipe"] == "volume")
+        window.command_for_frame("grid 10")
+        window.command_for_frame("directions 24")
+        window.command_for_frame("set grid.shift=0.25")
+        window.command_for_frame("bounces 3")
+        window.command_for_frame("exposure -1.5")
+        window.command("filter off")
+        window.command("panel Light")
+        window.wait("message", lambda e: "kept" in e["text"], window.key("b"))
+        self.assertEqual(window.quit(), 0)
+        first = json.loads(window.settings.read_text())
+        self.assertEqual(first["new"], before["new"])
+        self.assertEqual(first["picture"]["of_the_future"], 7)
+        self.assertEqual(first["picture"]["view"], "normals")
+        self.assertEqual(first["technique"]["recipe"], "volume")
+        self.assertEqual(first["technique"]["volume"]["grid"], 10)
+        self.assertEqual(first["technique"]["parameters"], {"grid.shift": "0.25"})
+        self.assertEqual(first["technique"]["bounces"], 3)
+        self.assertEqual(first["picture"]["exposure_ev"], -1.5)
+        self.assertFalse(first["picture"]["post_filter"])
+        self.assertTrue(first["panels"]["Light"])
+        self.assertEqual(first["recent_files"], [str(scene("cornell"))])
+        self.assertEqual(list(first["bookmarks"][str(scene("cornell"))]), ["view 1"])
+
+        window = self.window(scene("cornell"), settings={}, quick=False, panel=True)
+        frame = window.last()
+        self.assertEqual((frame["view"], frame["recipe"]), ("normals", "volume"))
+        self.assertIn("of_the_future", window.said())
+        self.assertEqual(window.quit(), 0)
+        self.assertEqual(json.loads(window.settings.read_text()), first)
+
+    def test_undo_keeps_what_is_no_step(self):
+        window = self.window(scene("cornell"))
+        window.command_for_frame("set vpl.count=64")
+        window.wait("message", lambda e: "kept" in e["text"], window.key("b"))
+        window.wait("message", lambda e: e["text"] == "undone: vpl.count", window.key("ctrl+z"))
+        window.wait("message", lambda e: e["text"] == "view 1", window.key("n"))
+        window.wait("message", lambda e: e["text"] == "done again: vpl.count", window.key("ctrl+shift+z"))
+        self.assertEqual(window.quit(), 0)
+        kept = json.loads(window.settings.read_text())
+        self.assertEqual(len(kept["bookmarks"]), 1)
+        self.assertEqual(kept["technique"]["parameters"]["vpl.count"], "64")
+
+    def test_broken_ones_are_refused(self):
+        file = self.folder / "broken.json"
+        for text, culprit in (("{", "broken.json"), ('{"volgi_demo": 1, "picture": {"view": 7}}', "picture.view"),
+                              ('{"volgi_demo": 1, "picture": {"view": "inside out"}}', "picture.view"),
+                              ('{"volgi_demo": 99}', "broken.json"),
+                              ('{"volgi_demo": 1, "technique": {"recipe": "magic"}}', "technique.recipe")):
+            file.write_text(text)
+            done = self.demo(scene("cornell"), "--settings", file, env=self.display.environment())
+            self.assertEqual(done.returncode, 3, f"{text}: {done.stderr}")
+            self.assert_one_line(done.stderr, "broken.json", culprit)
+            self.assertEqual(file.read_text(), text)
+
+
+class Keyboard(WindowCase):
+    def lines(self):
+        """A harmless line for each command; the last ends the program."""
+        folder, cornell = self.folder, scene("cornell")
+        return [f"open {cornell}", "reload", f"append {self.room}", f"open {cornell}", "recipe volume", "recipe next",
+                "recipe previous", "recipe hybrid", "stage sources/sky toggle", "recipe hybrid", "set vpl.count=64",
+                "reset vpl.count", "reset", "preset fast", "grid 8", "scheme conservative", "sh-order 2",
+                "scheme ordinates", "directions 24", "iterations auto", "bounces 3", "bounces all", "part indirect",
+                "part full", "backend cpu", "shaders", "undo", "redo", "view albedo", "texture gbuffer", "layer 0",
+                "layer +1", "channel r", "channel rgb", "range 0,2", "range auto", "log on", "log off",
+                "voxels coverage", "lobe 0,1,0", "view picture", "exposure -1", "expose 0.5", "exposure auto",
+                "filter off", "average 4", "average off", "reference beside", "wipe 0.3", "reference off", "motion off",
+                "frame", "camera 0", "camera next", "look 0,1,3.5 0,1,0 50", "yfov 60", "orbit 10,-5", "bookmark door",
+                "bookmark next", "bookmark go door", "bookmark delete door", "record", "record", "replay", "replay",
+                f"path save {folder}/path.json", f"path load {folder}/path.json", "light next", "light take 0",
+                "light add spot", "light intensity 3", "light colour 1,2,3", "light towards 0,-1,0", "light delete",
+                "light reset", f"lights save {folder}/lights.json", "emission 0 0.1,0.1,0.1", "light reset",
+                "sky 0.2,0.2,0.3", "sky-rotate 30", "sky none", "open builtin:metaballs", "time 0.5", "time +0.1",
+                "play on", "play off", "times on", "times off", f"times save {folder}/times.csv",
+                f"screenshot {folder}/shot", "copy camera", "copy command", f"settings save {folder}/kept.json",
+                f"settings load {folder}/kept.json", "settings save", "panel", "panel Camera", "panel", "keyboard",
+                "help", "help", "palette", "fullscreen", "fullscreen", "quit"]
+
+    def setUp(self):
+        super().setUp()
+        self.room = write_triangle_room(self.folder / "room.glb", light=True)
+
+    def test_every_command_by_its_line(self):
+        known = re.findall(r"^\| `([a-z-]+)", self.demo("--list", "commands").stdout, re.MULTILINE)
+        self.assertGreater(len(known), 40)
+        lines = self.lines()
+        self.assertEqual(sorted(set(known)), sorted({line.split()[0] for line in lines}), "a command without a line")
+        window = self.window(scene("cornell"), size="240x150")
+        for line in lines[:-1]:
+            mark = window.command(line)
+            if line.startswith(("open", "append", "reload")):
+                window.wait("frame", None, mark)
+            error = window.find("error", None, mark)
+            self.assertIsNone(error, f"{line}: {error}")
+        for name in ("path.json", "lights.json", "times.csv", "shot.png", "shot.exr", "shot.txt", "kept.json"):
+            self.assertTrue((self.folder / name).exists(), name)
+        window.key("ctrl+p")
+        window.tool("type", "--delay", "1", "quit")
+        window.tool("key", "Return")
+        self.assertEqual(window.wait("end")["gl_errors"], 0)
+        self.assertEqual(window.process.wait(LONGEST_S), 0)
+
+    def test_what_is_no_command_is_said(self):
+        window = self.window(scene("cornell"))
+        for line, culprit in (("frobnicate 7", "frobnicate"), ("set vpl.count=many", "vpl.count"),
+                              ("view inside-out", "inside-out"), ("stage nothing off", "nothing"),
+                              ("open /nowhere/at/all.glb", "all.glb"), ("grid 0", "grid"), ("camera 9", "camera"),
+                              ("light delete", "light"), ("play", "nothing moves")):
+            mark = window.command(line)
+            self.assertIn(culprit, window.wait("error", None, mark)["text"])
+        window.key_for_frame("6", lambda e: e["view"] == "albedo")
+        self.assertEqual(window.quit(), 0)
+
+    def test_palette_takes_all_letters(self):
+        """Those that are typed while it opens too: none of them is a key's command. Frames are slow here."""
+        settings = {"volgi_demo": 1, "picture": {"progressive": True, "most_samples": 100000, "motion_fps": 0}}
+        window = self.window(scene("cornell"), size="480x300", settings=settings, quick=False)
+        mark = window.mark()
+        window.tool("key", "ctrl+p", "v", "i", "e", "w", "space", "a", "l", "b", "e", "d", "o", "Return")
+        window.wait("frame", lambda e: e["view"] == "albedo", mark)
+        self.assertIsNone(window.find("message", None, mark))
+        self.assertIsNone(window.find("error", None, mark))
+        self.assertEqual(window.quit(), 0)
+
+    def test_panels_by_keys(self):
+        sections = ("Scene", "View", "Technique", "Light", "Camera", "Picture", "Reference", "Times")
+        settings = {"volgi_demo": 1, "picture": STILL,
+                    "panels": {name: name == "Picture" for name in sections}}
+        window = self.window(scene("cornell"), size="640x400", settings=settings, panel=True)
+        window.wait("keyboard", lambda e: e["of"] == "panels", window.key("F2"))
+
+        def panels():
+            return window.picture().part(0.5, 0.0, 1.0, 1.0)
+
+        # Six headings down, the exposure, the box "smooth edges while moving".
+        for _ in range(sections.index("Picture") + 2):
+            before = panels()
+            window.key("Down")
+            window.wait_for("the arrow does not move the mark", lambda: panels().distance(before) > 0.0)
+        before = panels()
+        window.key("space")
+        window.wait_for("Space does not switch the box", lambda: panels().distance(before) > 0.0)
+        mark = window.key("Escape")
+        window.wait("keyboard", lambda e: e["of"] == "picture", mark)
+        window.key_for_frame("6", lambda e: e["view"] == "albedo")
+        self.assertEqual(window.quit(), 0)
+        self.assertFalse(json.loads(window.settings.read_text())["picture"]["post_filter"])
+
+
+class Shaders(WindowCase):
+    def test_written_while_the_window_is_open(self):
+        shaders = self.folder / "shaders"
+        shutil.copytree(Given.source / "shaders", shaders)
+        window = self.window(scene("cornell"), "--exposure", "1", "--shaders", shaders)
+        before = window.undisturbed()
+        file = shaders / "screen/base/direct.frag.glsl"
+        right = file.read_text()
+        mark = window.mark()
+        file.write_text(right.replace("void main()", "oh void main()"))
+        self.assertIn("direct.frag.glsl", window.wait("error", None, mark)["text"])
+        self.assertEqual(window.undisturbed().distance(before), 0.0)
+        mark = window.mark()
+        file.write_text(right)
+        window.wait("frame", None, mark)
+        self.assertIsNone(window.find("error", None, mark))
+        mark = window.mark()
+        black = shaders / "screen/base/compose.frag.glsl"
+        black.write_text(black.read_text().replace("void main() {", "void main() { if (gl_FragCoord.x > 0.0) discard;"))
+        window.wait("frame", None, mark)
+        window.wait_for("another shader makes the same picture", lambda: window.undisturbed().distance(before) > 1.0)
+        self.assertEqual(window.quit(), 0)
+
+
+class Memory(WindowCase):
+    def resident_mib(self, window):
+        status = pathlib.Path(f"/proc/{window.process.pid}/status").read_text()
+        return int(re.search(r"VmRSS:\s*(\d+) kB", status)[1]) / 1024.0
+
+    def test_flat_while_an_animation_plays(self):
+        frames = 2000 if os.environ.get("VOLGI_LONG") else 300
+        window = self.window("builtin:metaballs", "--do", "play on", size="64x48")
+        first = window.last()["frames"]
+        window.wait("frame", lambda e: e["frames"] >= first + 100, longest=300)
+        early = self.resident_mib(window)
+        window.wait("frame", lambda e: e["frames"] >= first + frames, longest=3000)
+        late = self.resident_mib(window)
+        print(f"resident after 100 frames {early:.1f} MiB, after {frames} {late:.1f} MiB")
+        self.assertLess(late - early, 8.0)
+        self.assertEqual(window.quit(), 0)
+
+
+class Displays(WindowCase):
+    def test_none(self):
+        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        done = self.demo(scene("cornell"), "--no-settings", env=environment)
+        self.assertEqual(done.returncode, 4)
+        self.assert_one_line(done.stderr, "--headless")
+
+    def test_one_that_goes_away(self):
+        for arguments in ([scene("cornell")], ["builtin:metaballs", "--do", "play on"]):
+            display = Display()
+            window = Window(display, self.folder, *arguments)
+            self.addCleanup(window.close)
+            display.process.send_signal(signal.SIGKILL)
+            display.process.wait()
+            self.assertEqual(window.process.wait(LONGEST_S), 4, window.said())
+            self.assert_one_line(window.said(), "display", "--headless")
+
+
+class Headless(Case):
+    PATH = {"volgi_camera_path": 1, "keys": [
+        {"time_s": 0.0, "position": [0.0, 1.0, 3.9], "orientation": [0, 0, 0, 1], "yfov_rad": 0.7},
+        {"time_s": 0.2, "position": [0.3, 1.1, 3.5], "orientation": [0, 0, 0, 1], "yfov_rad": 0.7}]}
+    SMALL = ["--headless", "--size", "96x64", *QUICK]
+
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "path.json"
+        self.path.write_text(json.dumps(self.PATH))
+
+    def made(self, *arguments):
+        done = self.demo(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_every_view(self):
+        for view in [*Views.KEYS.values(), "negative_lights"]:
+            with self.subTest(view=view):
+                of_view = {"negative_lights": ["--gi", "negative"], "emission": ["--do", "emission 0 0.1,0.3,0.2"]}
+                self.made(scene("cornell"), *self.SMALL, "--view", view, "-o", f"{view}.png", *of_view.get(view, []))
+                picture = read_png(self.folder / f"{view}.png")
+                self.assertEqual((picture.width, picture.height), (96, 64))
+                self.assertGreater(picture.spread(), 8.0)
+
+    def test_path(self):
+        self.made(scene("cornell"), *self.SMALL, "--path", self.path, "--frames", "3", "--fps", "10", "-o",
+                  "tour.%04d.png")
+        pictures = [read_png(self.folder / f"tour.{k:04}.png") for k in range(3)]
+        self.assertFalse((self.folder / "tour.0003.png").exists())
+        for a, b in zip(pictures, pictures[1:]):
+            self.assertGreater(a.spread(), 8.0)
+            self.assertGreater(a.distance(b), 0.5)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "no ffmpeg")
+    def test_film(self):
+        self.made(scene("cornell"), *self.SMALL, "--path", self.path, "--frames", "3", "--fps", "10", "-o", "tour.webp")
+        film = (self.folder / "tour.webp").read_bytes()
+        self.assertEqual((film[:4], film[8:12]), (b"RIFF", b"WEBP"))
+        self.assertEqual(film.count(b"ANMF"), 3)
+        self.assertEqual([p.name for p in self.folder.iterdir() if "unfinished" in p.name], [])
+
+    def test_benchmark(self):
+        self.made(scene("cornell"), *self.SMALL, "--benchmark", self.path, "--frames", "3", "-o", "bench")
+        names = sorted(p.name for p in (self.folder / "bench").iterdir())
+        self.assertEqual(names, ["benchmark.json", "frame.0000.png", "frame.0001.png", "frame.0002.png",
+                                 "settings.json", "times.csv"])
+        summary = json.loads((self.folder / "bench/benchmark.json").read_text())
+        self.assertEqual(summary["frames"], 3)
+        self.assertGreater(summary["median_ms"], 0.0)
+        rows = [row.split(",") for row in (self.folder / "bench/times.csv").read_text().splitlines()]
+        self.assertEqual(rows[0], ["frame", "pass", "gpu_ms", "cpu_ms"])
+        self.assertEqual([row[0] for row in rows if row[1] == "frame"], ["0", "1", "2"])
+        self.assertIn("screen/base/gbuffer", {row[1] for row in rows})
+        json.loads((self.folder / "bench/settings.json").read_text())
+
+    def test_refusals(self):
+        broken = self.folder / "broken.json"
+        broken.write_text("{}")
+        for code, part, *arguments in (
+                (2, "-o", scene("cornell"), *self.SMALL),
+                (2, "--size", scene("cornell"), "--headless", "--size", "wide", "-o", "x.png"),
+                (2, "inside-out", scene("cornell"), *self.SMALL, "--view", "inside-out", "-o", "x.png"),
+                (2, ".png", scene("cornell"), *self.SMALL, "-o", "x.jpg"),
+                (2, "frobnicate", scene("cornell"), *self.SMALL, "--do", "frobnicate", "-o", "x.png"),
+                (2, "vpl.count", scene("cornell"), *self.SMALL, "--do", "set vpl.count=0", "-o", "x.png"),
+                (2, "vpl.counts", scene("cornell"), *self.SMALL, "--set", "vpl.counts=7", "-o", "x.png"),
+                (3, "missing.glb", "missing.glb", *self.SMALL, "-o", "x.png"),
+                (3, "broken.json", scene("cornell"), *self.SMALL, "--path", broken, "-o", "x.%04d.png"),
+                (5, "--memory-limit", scene("cornell"), *self.SMALL, "--memory-limit", "10K", "-o", "x.png"),
+                (6, "nowhere", scene("cornell"), *self.SMALL, "-o", "/nowhere/x.png")):
+            with self.subTest(arguments=arguments):
+                done = self.demo(*arguments)
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assert_one_line(done.stderr, part)
+                self.assertEqual(list(self.folder.glob("x.*")), [])
+
+
+class Times(WindowCase):
+    """Prints figures; holds none. Not among the tests of ctest."""
+
+    def frames_a_second(self, window, seconds=8.0):
+        start = window.mark()
+        eyes = 0
+        end = time.monotonic() + seconds
+        window.pointer(200, 180)
+        window.tool("mousedown", 1)
+        while time.monotonic() < end:
+            eyes += 1
+            window.pointer(200 + eyes % 100, 180 + eyes % 7)
+            time.sleep(0.02)
+        window.tool("mouseup", 1)
+        window.read()
+        at = [e["s"] for e in window.events[start:] if e["event"] == "frame"]
+        return (len(at) - 1) / (at[-1] - at[0])
+
+    def averaging(self, window, frames=12):
+        start = window.wait("frame", None, window.mark())
+        end = window.wait("frame", lambda e: e["frames"] >= start["frames"] + frames, longest=600)
+        return (end["frames"] - start["frames"]) / (end["s"] - start["s"])
+
+    def test_print(self):
+        for name in ("cornell", "room"):
+            window = self.window(scene(name), "--gi", "hybrid", size="640x360", quick=False)
+            print(f"{name}: first picture after {window.find('first_picture')['s']:.2f} s")
+            for motion in ("off", "12"):
+                window.command(f"motion {motion}")
+                print(f"{name}: orbiting, hybrid, 640x360, motion {motion}: {self.frames_a_second(window):.2f} fps")
+            window.command("average 100000")
+            off, on = [], []
+            for _ in range(3):  # in turn, as other programs come and go
+                off.append(self.averaging(window))
+                mark = window.command("reference beside")
+                window.wait("frame", lambda e: e["reference"] > 0, mark, 200)
+                on.append(self.averaging(window))
+                window.command("reference off")
+            print(f"{name}: averaging {off} fps, {on} with the reference: ratio {sum(on) / sum(off):.2f}")
+            window.quit()
+
+
+def main():
+    for name, value in zip(ORDER, sys.argv[1:]):
+        setattr(Given, name, pathlib.Path(value).resolve() if value else None)
+    cases = sys.argv[1 + len(ORDER):]
+    needs_display = cases != ["Headless"]
+    missing = [tool for tool in ("Xvfb", "xdotool") if not shutil.which(tool)]
+    if not Given.hand or not Given.hand.exists():
+        missing.append("x11_hand (libx11-dev was not there when this was built)")
+    if needs_display and missing:
+        print("missing: " + ", ".join(missing))
+        sys.exit(1 if os.environ.get("VOLGI_REQUIRE_GL") else SKIPPED)
+    if not cases:
+        cases = [c.__name__ for c in (Views, Stages, Light, Camera, Drop, Desktop, Screenshots, SettingsFile, Keyboard, Shaders,
+                                      Memory, Displays, Headless)]
+    try:
+        program = unittest.main(argv=[sys.argv[0], "-v", *cases], exit=False)
+    finally:
+        if WindowCase.display:
+            WindowCase.display.close()
+    sys.exit(0 if program.result.wasSuccessful() else 1)
+
+
+if __name__ == "__main__":
+    main()
