@@ -667,6 +667,7 @@ TEST_F(DemoSession, NamesAreQuotedForAShell) {
   EXPECT_NE(render_command(session(), "a b.png", {}).find("it'\\''s a room.glb' -o 'a b.png'"), std::string::npos);
 }
 
+#ifdef VOLGI_WINDOW_TESTS  // minutes
 // --- anything at all
 
 /// A line that a command takes, mostly; refusals are part of it.
@@ -751,6 +752,7 @@ TEST_F(DemoSession, AThousandRandomChanges) {
   draw();
   EXPECT_EQ(distance(image(), picture), 0.0);
 }
+#endif
 
 }  // namespace
 }  // namespace volgi::demo
