@@ -12,7 +12,8 @@ namespace volgi::screen {
 /// layer each. All layers are made together, from triangles by a compute shader that meets each texel's own ray with
 /// the triangle's plane: a paraboloid bends edges, and a rasterizer's straight ones would tear large triangles and
 /// those that cross the rim. Surfaces whose plane passes through the area light, as its own does, are not seen. Alpha:
-/// MASK and BLEND (hashed) as in raster passes. Deterministic. Cost: triangles times layers, and texels covered.
+/// MASK and BLEND (hashed) as in raster passes. Large triangles are listed by tiles of 16 x 16 texels, and what a
+/// tile has is drawn at once. Deterministic. Cost: triangles times layers, and texels covered.
 class ParaboloidDepthMaps {
  public:
   static constexpr const char* name = "screen/visibility/area_maps/paraboloid_depth_maps";
@@ -39,7 +40,8 @@ class ParaboloidDepthMaps {
 
   int resolution_, layers_;
   gl::Texture distance_;
-  gl::Buffer tiles_;  // of large triangles: TileListHead, then uvec2 each
+  gl::Buffer tiles_;      // of large triangles: TileListHead, then uvec2 each
+  gl::Buffer tile_ends_;  // of every tile, its last entry among them
   Programs opaque_, alpha_;
 };
 

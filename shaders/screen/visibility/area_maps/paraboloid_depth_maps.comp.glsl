@@ -67,7 +67,8 @@ void list_tiles(LayerTriangle t, int triangle, ivec2 low, ivec2 high) {
       if (!tile_may_touch(t, ivec2(x, y))) continue;
       uint slot = atomicAdd(head.count, 1u);
       if (slot < head.capacity) {
-        tiles[slot] = uvec2(triangle, uint(t.layer) | uint(x) << 16 | uint(y) << 24);
+        int tile = (t.layer * tiles_across() + y) * tiles_across() + x;
+        entries[slot] = uvec2(triangle, atomicExchange(tile_ends[tile], slot + 1u));
         continue;
       }
       for (int i = 0; i < TILE_TEXELS * TILE_TEXELS; ++i) {

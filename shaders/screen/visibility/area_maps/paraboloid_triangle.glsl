@@ -20,8 +20,12 @@ struct TileListHead {
   uint count;  // may exceed the capacity: the rest was drawn at once
   uint capacity;
 };
-// Tiles of large triangles: triangle, layer | x << 16 | y << 24.
-layout(std430, binding = MAP_TILES_SLOT) buffer TileList { TileListHead head; uvec2 tiles[]; };
+// Entries of large triangles: triangle, and the next entry of the same tile, from 1 on; 0: none.
+layout(std430, binding = MAP_TILES_SLOT) buffer TileList { TileListHead head; uvec2 entries[]; };
+// The last entry of every tile, layer after layer, from 1 on; 0: none.
+layout(std430, binding = MAP_TILE_ENDS_SLOT) buffer TileEnds { uint tile_ends[]; };
+
+int tiles_across() { return (resolution + TILE_TEXELS - 1) / TILE_TEXELS; }
 
 // In the frame of its area light: z along the axis.
 struct LayerTriangle {
@@ -123,22 +127,29 @@ bool texel_keeps(LayerTriangle t, ivec2 texel, vec3 weights, float distance_m, f
 }
 #endif
 
-// Keeps the distance of the triangle at a texel's centre where it is nearer than what is there. The direction stays
-// unnormalised, (2 x, 2 y, 1 - r^2), and its length is 1 + r^2.
-void draw_texel(LayerTriangle t, ivec2 texel) {
+#define NOTHING_BITS 0x7f800000u  // infinity
+
+// Distance of the triangle at a texel's centre. The direction stays unnormalised, (2 x, 2 y, 1 - r^2), and its length is
+// 1 + r^2.
+uint texel_bits(LayerTriangle t, ivec2 texel) {
   vec2 disk = disk_of_texel(texel);
   precise float squared = disk.x * disk.x + disk.y * disk.y;
-  if (squared > 1.0) return;
+  if (squared > 1.0) return NOTHING_BITS;
   precise vec3 d = vec3(2.0 * disk, 1.0 - squared);
   precise vec3 inside = vec3(dot(t.edge_bc, d), dot(t.edge_ca, d), dot(t.edge_ab, d));
-  if (min(inside.x, min(inside.y, inside.z)) < 0.0) return;
+  if (min(inside.x, min(inside.y, inside.z)) < 0.0) return NOTHING_BITS;
   float along = abs(dot(t.normal, d));
   float distance_m = min(t.volume * (1.0 + squared) / along, t.farthest_m);
 #ifdef ALPHA
   vec3 weights = inside / max(inside.x + inside.y + inside.z, 1e-37);
-  if (!texel_keeps(t, texel, weights, distance_m, along / ((1.0 + squared) * length(t.normal)), 1.0 + squared)) return;
+  if (!texel_keeps(t, texel, weights, distance_m, along / ((1.0 + squared) * length(t.normal)), 1.0 + squared)) return NOTHING_BITS;
 #endif
-  uint bits = floatBitsToUint(distance_m);
+  return floatBitsToUint(distance_m);
+}
+
+// Keeps it where it is nearer than what is there.
+void draw_texel(LayerTriangle t, ivec2 texel) {
+  uint bits = texel_bits(t, texel);
   ivec3 at = ivec3(texel, t.layer);
   if (bits < imageLoad(distance_bits, at).r) imageAtomicMin(distance_bits, at, bits);
 }

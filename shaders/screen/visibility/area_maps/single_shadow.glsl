@@ -5,16 +5,17 @@ float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
   vec2 disk = paraboloid_from_direction(receiver.position / receiver_m);
   float edge_m = texel_angle(disk, resolution) * receiver_m;
   vec2 at = (disk * 0.5 + 0.5) * float(resolution) - 0.5;
-  ivec2 first = ivec2(floor(at));
-  vec2 t = at - vec2(first);
+  vec2 first = clamp(floor(at), vec2(0.0), vec2(float(resolution - 2)));
+  vec2 t = clamp(at - first, vec2(0.0), vec2(1.0));
+  // Looked up in the middle of the four, where rounding cannot choose others; they come anticlockwise from (0, 1).
+  vec4 distances_m = textureGather(shadow_distance, vec3((first + 1.0) / float(resolution), float(receiver.layer)));
+  const vec2 CORNERS[4] = vec2[](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));
   float visible = 0.0;
   for (int k = 0; k < 4; ++k) {
-    ivec2 corner = ivec2(k & 1, k >> 1);
-    ivec2 texel = clamp(first + corner, ivec2(0), ivec2(resolution - 1));
-    vec2 w = mix(1.0 - t, t, vec2(corner));
-    float distance_m = texelFetch(shadow_distance, ivec3(texel, receiver.layer), 0).r;
-    vec2 texel_disk = disk_of_shadow_texel(texel, resolution);
-    if (!comparison_hides(receiver, texel_disk, distance_m, receiver_m, edge_m)) visible += w.x * w.y;
+    vec2 texel_disk = (first + CORNERS[k] + 0.5) * (2.0 / float(resolution)) - 1.0;
+    vec2 w = mix(1.0 - t, t, CORNERS[k]);
+    bool hides = comparison_hides(receiver, texel_disk, distances_m[k], receiver_m, edge_m);
+    visible += hides ? 0.0 : w.x * w.y;
   }
   return visible;
 }

@@ -26,6 +26,7 @@
 #define VERTICES_SLOT 0
 #define MAPPED_AREA_LIGHTS_SLOT 1
 #define MAP_TILES_SLOT 2
+#define MAP_TILE_ENDS_SLOT 3
 #define DISTANCE_BITS_IMAGE 0
 
 // Convolution shadows.
