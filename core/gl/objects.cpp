@@ -164,6 +164,14 @@ Texture Texture::make_3d(GLenum format, glm::ivec3 size) {
   return t;
 }
 
+Texture Texture::view_of(const Buffer& buffer, GLenum format, int bytes_per_texel) {
+  const int texels = int(buffer.bytes() / size_t(bytes_per_texel));
+  check_texture_size({texels, 1, 1}, GL_MAX_TEXTURE_BUFFER_SIZE, GL_NONE);
+  Texture t(GL_TEXTURE_BUFFER, format, {texels, 1, 1});
+  glTextureBuffer(t.id(), format, buffer.id());
+  return t;
+}
+
 Texture::Texture(GLenum target, GLenum format, glm::ivec3 size) : target_(target), format_(format), size_(size) {
   GLuint id = 0;
   glCreateTextures(target, 1, &id);

@@ -106,6 +106,8 @@ class Texture {
   static Texture make_2d(GLenum format, int width, int height, int levels = 1);
   static Texture make_2d_array(GLenum format, int width, int height, int layers, int levels = 1);
   static Texture make_3d(GLenum format, glm::ivec3 size);
+  /// A buffer as texels, for samplerBuffer; it holds no memory of its own and must not outlive the buffer's.
+  static Texture view_of(const Buffer& buffer, GLenum format, int bytes_per_texel);
 
   GLuint id() const { return handle_.id(); }
   GLenum format() const { return format_; }

@@ -18,4 +18,6 @@ void WorkList::dispatch() const { gl::dispatch_indirect(buffer_); }
 
 GLuint WorkList::count() const { return buffer_.download<WorkListHead>(1).front().count; }
 
+std::vector<GLuint> WorkList::entries() const { return buffer_.download<GLuint>(count(), sizeof(WorkListHead)); }
+
 }  // namespace volgi::screen

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include "core/gl/objects.h"
 
 namespace volgi::screen {
@@ -16,8 +18,9 @@ class WorkList {
   /// The current program, a group for as many entries as APPEND_TO_LIST was told. After a barrier for storage and
   /// commands.
   void dispatch() const;
-  /// Waits for the GPU; after a frame, not in one.
+  /// Both wait for the GPU; after a frame, not in one.
   GLuint count() const;
+  std::vector<GLuint> entries() const;
   size_t bytes() const { return buffer_.bytes(); }
 
  private:
