@@ -6,4 +6,10 @@
 #define VIRTUAL_LIGHTS_BLOCK 0  // VIRTUAL_LIGHTS_PER_BLOCK of them
 #define PIXEL_LIST_SLOT 0       // those that are gathered again
 
+// SmoothPixels, beside PIXEL_LIST_SLOT: of all pictures, from these on.
+#define SMOOTH_PICTURES 4
+#define SMOOTH_IRRADIANCE_UNIT 3  // GBUFFER_UNITS
+#define SMOOTH_IRRADIANCE_IMAGE 0
+#define SMOOTH_MEAN_SLOT 1
+
 #endif
