@@ -2,6 +2,7 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "propagation/side_flux_gl.h"
+#include "screen/base/smooth_pixels.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/sources/sky/sky_maps.h"
@@ -15,8 +16,9 @@ struct FirstBounce {
   const LightClusters& clusters;
   const VirtualLightSubdivision* subdivision;  // what lights those near it instead; null: nobody
   float near_zone;                             // areas of a light; 0 without subdivision
-  const SkyMaps* sky;  // whose arrival the screen carries, but not its first reflection; or null
-  int sample = 0;      // FrameData::sample
+  const SkyMaps* sky;                    // whose arrival the screen carries, but not its first reflection; or null
+  int sample = 0;                        // FrameData::sample
+  const SmoothGather* smooth = nullptr;  // what pixels are gathered together with; null: the volume's light alone
 };
 
 /// Pass "screen/bounces/volume/side_gather": what sides reflect of the virtual lights, each seen as far as its area

@@ -5,6 +5,8 @@
 #include "core/gl/raster_state.h"
 #include "shaders/propagation/partial_sums.shared.h"
 #include "shaders/propagation/slots.shared.h"
+#include "shaders/screen/base/slots.shared.h"
+#include "shaders/screen/bounces/volume/slots.shared.h"
 
 namespace volgi::screen {
 
@@ -20,23 +22,68 @@ VolumeGather::VolumeGather(glm::ivec2 size)
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }
 
-void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels,
-                       const gl::Buffer& direct_irradiance, const gl::Buffer& indirect_irradiance, bool seeps,
+void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Volume& volume, const SmoothGather* with,
                        gl::PassTimer& timer) {
-  auto scope = timer.scope(name);
-  voxels.bind();
-  if (seeps) sum(direct_irradiance);
+  volume_ = &volume;
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  viewer_ = perspective ? camera.world_from_camera[3] : camera.world_from_camera[2];
+  if (volume.seeps) {
+    const auto scope = timer.scope(name);
+    sum(volume.direct_irradiance);
+  }
+  if (with == nullptr) {
+    draw(gbuffer, timer);
+  } else {
+    const std::array<SmoothLight*, 2> lights{&with->first, this};
+    if (indirect_irradiance_.id() == 0) {
+      const glm::ivec2 size(direct_.size());
+      direct_irradiance_ = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
+      indirect_irradiance_ = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
+    }
+    with->pixels.run(gbuffer, lights, timer);
+  }
+  volume_ = nullptr;
+}
+
+void VolumeGather::bind_volume(const gl::Program& program) const {
+  volume_->voxels.bind();
+  sum_.bind_storage(DIRECT_SUM_SLOT);
+  volume_->direct_irradiance.bind_storage(DIRECT_IRRADIANCE_SLOT);
+  volume_->indirect_irradiance.bind_storage(INDIRECT_IRRADIANCE_SLOT);
+  program.set("seeps", volume_->seeps ? 0.01f : 0.0f);
+  program.set("viewer", viewer_);
+}
+
+void VolumeGather::draw(const GBuffer& gbuffer, gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
   gl::begin_fullscreen_pass();
   framebuffer_.bind();
   gbuffer.bind();
-  sum_.bind_storage(DIRECT_SUM_SLOT);
-  direct_irradiance.bind_storage(DIRECT_IRRADIANCE_SLOT);
-  indirect_irradiance.bind_storage(INDIRECT_IRRADIANCE_SLOT);
+  bind_volume(program_);
   program_.use();
-  program_.set("seeps", seeps ? 0.01f : 0.0f);
-  const bool perspective = camera.kind == Camera::Kind::perspective;
-  program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
   gl::draw_fullscreen_triangle();
+}
+
+void VolumeGather::gather(const WorkList& list, gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  const bool apart = volume_->direct_is_apart;
+  std::optional<gl::Program>& program = listed_[apart ? 1 : 0];
+  if (!program) {
+    program = gl::Program::compute("screen/bounces/volume/volume_gather_listed.comp.glsl",
+                                   apart ? std::vector<std::string>{"WITH_DIRECT"} : std::vector<std::string>{});
+  }
+  bind_volume(*program);
+  list.bind(PIXEL_LIST_SLOT);
+  indirect_irradiance_.bind_image(GATHERED_INDIRECT_IMAGE, GL_WRITE_ONLY);
+  if (apart) direct_irradiance_.bind_image(GATHERED_DIRECT_IMAGE, GL_WRITE_ONLY);
+  program->use();
+  list.dispatch();
+}
+
+std::vector<SmoothPicture> VolumeGather::pictures() const {
+  std::vector<SmoothPicture> pictures{{&indirect_irradiance_, &indirect_}};
+  if (volume_->direct_is_apart) pictures.push_back({&direct_irradiance_, &direct_});
+  return pictures;
 }
 
 void VolumeGather::sum(const gl::Buffer& irradiance) const {

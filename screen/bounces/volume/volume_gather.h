@@ -1,29 +1,42 @@
 #pragma once
+#include <array>
+#include <optional>
+
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/named_texture.h"
+#include "screen/base/smooth_pixels.h"
 #include "voxel/voxel_grid_gl.h"
 
 namespace volgi::screen {
 
 /// Pass "screen/bounces/volume/volume_gather": the volume's light on every pixel, albedo/pi times the irradiance of the
 /// sides of the cells in front of its surface: trilinear, like normals, never from behind a surface
-/// (docs/theory.md#reconstruction). Cost: eight cells and their sides a pixel.
-class VolumeGather {
+/// (docs/theory.md#reconstruction). Cost: eight cells and their sides a pixel that is gathered: every one, or with
+/// other smooth light those that need it (SmoothPixels).
+class VolumeGather : private SmoothLight {
  public:
   static constexpr const char* name = "screen/bounces/volume/volume_gather";
   explicit VolumeGather(glm::ivec2 size);
-  /// @param direct_irradiance, indirect_irradiance  per side, vec4 [W m^-2]
-  /// @param seeps  direct light may have come into sealed cells, by maps that have texels: a hundredth of what sides
-  /// have in the mean counts as none, where a pixel looks for sides that show its surface.
-  void run(const GBuffer& gbuffer, const Camera& camera, const VoxelGridGl& voxels, const gl::Buffer& direct_irradiance,
-           const gl::Buffer& indirect_irradiance, bool seeps, gl::PassTimer& timer);
+  /// The volume that pixels are lit by, in one frame.
+  struct Volume {
+    const VoxelGridGl& voxels;
+    const gl::Buffer& direct_irradiance;  // per side, vec4 [W m^-2]
+    const gl::Buffer& indirect_irradiance;
+    /// Direct light may have come into sealed cells, by maps that have texels: a hundredth of what sides have in the
+    /// mean counts as none, where a pixel looks for sides that show its surface.
+    bool seeps = false;
+    bool direct_is_apart = true;  // false: nothing is in direct_irradiance, and direct() stays as it is
+  };
+  /// @param with  other smooth light, gathered together with this at the pixels that need it; null: every pixel.
+  void run(const GBuffer& gbuffer, const Camera& camera, const Volume& volume, const SmoothGather* with,
+           gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
-  size_t bytes() const { return bytes_for(direct_.size()); }
+  size_t bytes() const { return bytes_for(direct_.size()) * (indirect_irradiance_.id() != 0 ? 2 : 1); }
   void list_textures(std::vector<NamedTexture>& list) const {
     list_texture(list, name, "direct", direct_);
     list_texture(list, name, "indirect", indirect_);
@@ -31,12 +44,20 @@ class VolumeGather {
   static size_t bytes_for(glm::ivec2 size) { return size_t(size.x) * size_t(size.y) * 2 * sizeof(glm::vec4); }
 
  private:
-  gl::Texture direct_, indirect_;
+  void gather(const WorkList& list, gl::PassTimer& timer) override;
+  std::vector<SmoothPicture> pictures() const override;
+  void draw(const GBuffer& gbuffer, gl::PassTimer& timer);
+  void bind_volume(const gl::Program& program) const;
   void sum(const gl::Buffer& irradiance) const;
 
+  gl::Texture direct_, indirect_;
+  gl::Texture direct_irradiance_, indirect_irradiance_;  // with other smooth light only
   gl::Framebuffer framebuffer_;
   gl::Buffer sum_, partials_;  // over all sides: what is dim is judged by their mean
   gl::Program program_, sum_sides_, sum_partials_;
+  std::array<std::optional<gl::Program>, 2> listed_;  // without and with direct light
+  const Volume* volume_ = nullptr;                    // within run()
+  glm::vec4 viewer_{0.0f};
 };
 
 }  // namespace volgi::screen

@@ -146,7 +146,9 @@ class SidesOnCpu : public FrameVolume {
       upload_irradiance(volume_.irradiance().direct, direct_);
       upload_irradiance(volume_.irradiance().indirect, indirect_);
     }
-    gather_.run(gbuffer, camera, voxels_, direct_, indirect_, false, timer);
+    const bool apart = first_bounce == nullptr || first_is_apart();
+    gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, false, apart},
+                first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool first_is_apart() const override { return options_.bounces.has_value(); }
   bool follow_scene() override {

@@ -124,15 +124,19 @@ class SidesOnGpu : public FrameVolume {
       lit_.run(buffers, maps, true, timer);
     }
     const bool sky_apart = first_bounce != nullptr && first_bounce->sky != nullptr;
+    first_is_apart_ = first_bounce == nullptr || lit_.emits() || sky_apart;
     bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits() || sky_apart, rules_, timer,
                                   streaming_sky(scene_, options_));
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
-    gather_.run(gbuffer, camera, lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), sky_apart, timer);
+    gather_.run(gbuffer, camera,
+                {lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), sky_apart, first_is_apart_},
+                first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool follow_scene() override {
     rules_ = bounce_rules(options_, largest_albedo(scene_));
     return lit_.follow_scene();
   }
+  bool first_is_apart() const override { return first_is_apart_; }
   const gl::Texture& direct() const override { return gather_.direct(); }
   const gl::Texture& indirect() const override { return gather_.indirect(); }
   void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
@@ -161,6 +165,7 @@ class SidesOnGpu : public FrameVolume {
   BouncesGl bounces_;
   SideIrradianceGl irradiance_;
   VolumeGather gather_;
+  bool first_is_apart_ = true;
   BounceReport bounce_report_;
   // Of the last run, when it is asked for.
   mutable RadianceVolumeGl radiance_;

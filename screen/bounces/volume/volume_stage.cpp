@@ -97,9 +97,9 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
                 "orders: --scheme ordinates or conservative");
   bounce_rules(o, 0.5f);
   LightPaths paths{punctual_higher, emission_first, emission_higher, sky_higher};
-  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
+  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}, .uses = {product<SmoothGather>()}};
   if (!sky_goes_by_lights(options)) {
-    r.uses = {product<SkyMaps>()};
+    r.uses.push_back(product<SkyMaps>());
     paths = paths | LightPaths{sky_first};
   }
   r.adds = {{paths}};
@@ -155,7 +155,8 @@ class VolumeStage : public Stage {
                               frame.find<VirtualLightSubdivision>(),
                               near_zone_,
                               takes_sky_ ? frame.find<SkyMaps>() : nullptr,
-                              frame.sample};
+                              frame.sample,
+                              frame.find<SmoothGather>()};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
       // What reaches surfaces from emission, or from sky that sides have received, has been reflected before.
       const LightPaths first_paths = takes_sky_ ? LightPaths{emission_first, sky_first} : LightPaths{emission_first};
