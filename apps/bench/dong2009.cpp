@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "apps/bench/repeated_frame.h"
+#include "screen/frame/registry.h"
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
@@ -47,7 +48,7 @@ const Step kSteps[] = {
 
 screen::FrameOptions frame_options(const AreaLightShadowName& shadow, int size) {
   screen::FrameOptions o;
-  o.recipe = "val";
+  screen::apply_recipe("val", o);
   o.size = glm::ivec2(size);
   o.of<screen::AreaMapOptions>().shadow = screen::AreaLightShadow::Method(shadow.number);
   // The paper's own, not our defaults.

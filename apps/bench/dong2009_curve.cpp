@@ -6,6 +6,7 @@
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/yardstick.h"
 #include "reference/virtual_light_tracer.h"
+#include "screen/frame/registry.h"
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/virtual_lights.h"
@@ -39,7 +40,7 @@ bool shown(const AreaLightShadowName& shadow, int lights, int area_lights) {
 
 screen::FrameOptions frame_options(int lights, int area_lights, const AreaLightShadowName& shadow, int size) {
   screen::FrameOptions o;
-  o.recipe = "val";
+  screen::apply_recipe("val", o);
   o.light = screen::LightPart::indirect;
   o.size = glm::ivec2(size);
   o.of<screen::VirtualLightOptions>().count = lights;

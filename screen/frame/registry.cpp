@@ -8,7 +8,9 @@
 #include "core/error.h"
 #include "screen/base/base_parameters.h"
 #include "screen/bounces/volume/volume_stage.h"
+#include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/interleaved_stage.h"
+#include "screen/gather/multires/multires_stage.h"
 #include "screen/gather/strided/strided_stage.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
@@ -29,6 +31,7 @@ constexpr const StageType* STAGE_TYPES[] = {
     &AREA_MAPS,
     &STRIDED_GATHER,
     &INTERLEAVED_GATHER,
+    &MULTIRES_GATHER,
     &VOLUME,
     &VOLUME_AFTER_FIRST_BOUNCE,
 };
@@ -36,19 +39,25 @@ constexpr const StageType* STAGE_TYPES[] = {
 using enum LightPath;
 constexpr LightPaths FIRST_ORDER{emission_direct, punctual_first, sky_direct, sky_first};
 
+void prefer_clustered_visibility_as_printed(TypeMap& settings) {
+  prefer_sky_by_lights(settings);
+  prefer_interleaved_gather(settings);
+}
+
 std::vector<Recipe> make_recipes() {
   return {
       {"hybrid",
        "the first bounce on the screen by clustered virtual lights, the others through the volume",
-       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &VOLUME_AFTER_FIRST_BOUNCE},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER,
+        &VOLUME_AFTER_FIRST_BOUNCE},
        LightPaths::all()},
       {"volume", "all light but direct light through the volume", {&VOLUME}, LightPaths::all()},
       {"lpv", "volume --scheme lpv2009", {&VOLUME}, LightPaths::all(), &prefer_lpv},
       {"val",
        "one bounce by virtual lights, each as far as its cluster sees (Dong et al. 2009)",
-       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER},
        FIRST_ORDER,
-       &prefer_sky_by_lights},
+       &prefer_clustered_visibility_as_printed},
       {"negative",
        "one bounce by virtual lights, less what negative lights take away (Cochran and Steele 2007)",
        {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &NEGATIVE_LIGHTS_STAGE, &STRIDED_GATHER},

@@ -9,6 +9,7 @@
 #include "screen/base/image_from_texture.h"
 #include "screen/bounces/volume/frame_volume.h"
 #include "screen/frame/frame.h"
+#include "screen/frame/registry.h"
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/gather/strided/virtual_light_gather.h"
 #include "screen/lights/resample/resample_stage.h"
@@ -52,7 +53,7 @@ inline const char* name_ending(TestedOn where) {
 /// Small pictures by the tested backend.
 inline screen::FrameOptions picture_options(Gi gi, glm::ivec2 size, screen::LightPart light = screen::LightPart::full) {
   screen::FrameOptions o;
-  o.recipe = gi;
+  screen::apply_recipe(std::string(gi), o);  // with what its name stands for
   o.size = size;
   o.light = light;
   o.backend = tested_backend();

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/gather/interleaved/near_lights.h"
 #include "screen/lights/resample/resample_stage.h"
@@ -29,6 +30,7 @@ LightPaths reflected_paths(const FrameOptions& options) {
 }
 
 StageRole role(const FrameOptions& options) {
+  if (options.of<GatherChoice>().stage != GatherChoice::Stage::interleaved) return {.active = false};
   const LightPaths paths = reflected_paths(options) | LightPaths{LightPath::emission_direct};
   AreaLightGather::check(options.of<Options>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};

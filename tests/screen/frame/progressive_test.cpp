@@ -11,6 +11,7 @@
 #include "core/sky.h"
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
+#include "screen/gather/gather_choice.h"
 #include "screen/sources/sky/sky_maps.h"
 #include "tests/screen/screen_scene.h"
 #include "tests/support/frame_picture.h"
@@ -147,6 +148,7 @@ TEST_F(Progressive, MeansComeToBeAPictureOfManyMoreLights) {
   const Mask mask = region_mask(
       Region::noedge, {reference.position, reference.normal, reference.direct, reference.id, reference.depth});
   screen::FrameOptions o = options("val", 64);
+  screen::prefer_interleaved_gather(o.settings);
   o.of<screen::VirtualLightOptions>().count = 512;
   o.of<screen::VirtualAreaLightOptions>().count = 64;
   o.of<screen::AreaLightGatherOptions>().interleave = 1;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "screen/frame/registry.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
 #include "shaders/shared/near_light.shared.h"
 #include "tests/screen/gathered.h"
@@ -59,7 +60,7 @@ double rms_error(const gl::Context& context, float near_zone) {
   const Scene scene = floor_and_wall();
   const Camera camera = at_the_edge(scene);
   screen::FrameOptions options;
-  options.recipe = "val";
+  screen::apply_recipe("val", options);
   options.light = screen::LightPart::indirect;
   options.size = kSize;
   options.of<screen::VirtualLightOptions>().count = 256;

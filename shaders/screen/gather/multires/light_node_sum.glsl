@@ -1,0 +1,67 @@
+// Nodes from their parts.
+#ifndef VOLGI_LIGHT_NODE_SUM_GLSL
+#define VOLGI_LIGHT_NODE_SUM_GLSL
+#include "screen/gather/multires/light_tree.glsl"
+#include "shared/constants.glsl"
+#include "shared/octahedral.glsl"
+
+vec3 normal_of(LightNode node) { return octahedral_decode(unpackSnorm2x16(node.normal)); }
+
+float weight_of(LightNode node) { return node.flux.r + node.flux.g + node.flux.b; }
+
+LightNode dark_node() { return LightNode(vec3(0.0), 0.0, vec3(0.0), 0u, 0.0, 0.0, 0.0, 0, 0.0, 1.0, 0, 0.0); }
+
+// A disk as it comes. A point in its plane sees nothing of it, nor does one that is lower than a thousandth of the edge of a light, which is sixteen such disks.
+LightNode node_of_disk(vec3 position, float area_m2, vec3 flux, uint normal, int kind) {
+  return LightNode(position, area_m2, flux, normal, 0.0, 0.0, 4e-3 * sqrt(area_m2), kind, area_m2 / (2.0 * PI), 1.0, 0, area_m2);
+}
+
+// Least length of the mean normal of a node that may stand for its parts: a twentieth of the flux may leave surfaces that
+// stand upright on the others'. Without it a single stray sample would open all nodes above it.
+#define LEAST_MEAN_NORMAL 0.95
+
+// Four parts, those without flux left out. Those of two kinds have no share together.
+LightNode sum_of_nodes(LightNode parts[4]) {
+  LightNode sum = dark_node();
+  vec3 normal = vec3(0.0);
+  float weight = 0.0;
+  int kind = -1;
+  bool one_kind = true;
+  for (int k = 0; k < 4; ++k) {
+    float w = weight_of(parts[k]);
+    if (!(w > 0.0)) continue;
+    sum.position += w * parts[k].position;
+    sum.surface_m2 += parts[k].surface_m2;
+    sum.cluster = parts[k].cluster;
+    sum.flux += parts[k].flux;
+    normal += w * parts[k].mean_normal * normal_of(parts[k]);
+    weight += w;
+    one_kind = one_kind && (kind < 0 || kind == parts[k].kind);
+    kind = parts[k].kind;
+  }
+  if (!(weight > 0.0)) return sum;
+  sum.position /= weight;
+  sum.kind = kind;
+  sum.mean_normal = length(normal) / weight;
+  normal = sum.mean_normal > 1e-3 ? normalize(normal) : vec3(0.0, 0.0, 1.0);
+  sum.normal = packSnorm2x16(octahedral_encode(normal));
+  float least_cosine = 1.0, rise = 3.0e38, moment = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    float w = weight_of(parts[k]);
+    if (!(w > 0.0)) continue;
+    vec3 way = parts[k].position - sum.position;
+    sum.radius_m = max(sum.radius_m, length(way) + parts[k].radius_m);
+    moment += w * (dot(way, way) + parts[k].variance_m2);
+    least_cosine = min(least_cosine, dot(normal_of(parts[k]), normal));
+    rise = parts[k].rise_m == NO_FLAT_NODE ? NO_FLAT_NODE : min(rise, dot(way, normal) + parts[k].rise_m);
+    one_kind = one_kind && !(parts[k].size_m2 < 0.0 && parts[k].mean_normal >= LEAST_MEAN_NORMAL);
+  }
+  sum.rise_m = least_cosine > 0.9999 ? rise : NO_FLAT_NODE;
+  sum.variance_m2 = moment / weight;
+  // The disk that is spread as they are, and no smaller than they are: it would be brighter.
+  sum.area_m2 = max(sum.surface_m2, 2.0 * PI * sum.variance_m2);
+  sum.size_m2 = (one_kind && sum.mean_normal >= LEAST_MEAN_NORMAL ? 1.0 : -1.0) * (sum.area_m2 + 1e-30);
+  return sum;
+}
+
+#endif
