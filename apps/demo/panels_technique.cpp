@@ -90,7 +90,8 @@ void Panels::draw_stage(const screen::StageType& stage) {
   } else {
     other.without.emplace_back(stage.name);
   }
-  const std::string why = refusal(viewer_.session, other);
+  std::string why = idle_stage(viewer_.session.settings().frame, stage.name);
+  if (why.empty()) why = refusal(viewer_.session, other);
   bool on = !off;
   if (!why.empty()) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, ImGui::GetStyle().Alpha * GREYED);
   ImGui::PushID(stage.name);

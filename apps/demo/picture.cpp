@@ -130,6 +130,9 @@ void Picture::show_texture(const screen::NamedTexture& texture, const ViewDetail
 namespace {
 
 /// By its name; else the one whose name has the words in it; else the first.
+/// Its alpha is 1 at pixels that were gathered, and 0 where neighbours said enough.
+constexpr const char* SMOOTH_LIGHT = "light_cut indirect irradiance";
+
 const screen::NamedTexture* find_texture(const std::vector<screen::NamedTexture>& all, std::string_view name) {
   const screen::NamedTexture* found = nullptr;
   for (const screen::NamedTexture& t : all) {
@@ -229,6 +232,10 @@ void Picture::show(const screen::Frame& frame, const Scene& scene, const Camera&
       return show_named(frame, "paraboloid_depth_maps distance", one_number, settings, timer);
     case View::low_resolution:
       one_number.layer = 0;
+      if (find_texture(frame.textures(), SMOOTH_LIGHT) != nullptr) {
+        one_number.channel = int(screen::TextureView::Channel::alpha);
+        return show_named(frame, SMOOTH_LIGHT, one_number, settings, timer);
+      }
       return show_named(frame, "error estimate", one_number, settings, timer);
     default:
       break;

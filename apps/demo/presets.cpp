@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -14,13 +15,13 @@ namespace volgi::demo {
 
 namespace {
 
-constexpr std::array FAST = {"vpl.count=256",   "vpl.one_of=4",    "val.count=24",   "val.map=128",
-                             "val.exact=0",     "gather.stride=4", "sky.parts=64",   "sky.map=128",
-                             "shadow.spot=512", "shadow.cube=256", "shadow.sun=1024"};
+constexpr std::array FAST = {
+    "vpl.count=256",           "vpl.one_of=4", "val.count=24", "val.map=128",     "val.exact=0",     "gather.stride=4",
+    "multires.tolerance=0.06", "sky.parts=64", "sky.map=128",  "shadow.spot=512", "shadow.cube=256", "shadow.sun=1024"};
 constexpr std::array<const char*, 0> DEFAULT = {};
-constexpr std::array FINE = {"vpl.count=4096",  "val.count=256",     "val.interleave=2", "gather.stride=1",
-                             "sky.parts=512",   "sky.interleave=2",  "shadow.spot=2048", "shadow.cube=1024",
-                             "shadow.sun=4096", "negative.count=512"};
+constexpr std::array FINE = {"vpl.count=4096",           "val.count=256",   "val.interleave=2",  "gather.stride=1",
+                             "multires.tolerance=0.015", "sky.parts=512",   "sky.interleave=2",  "shadow.spot=2048",
+                             "shadow.cube=1024",         "shadow.sun=4096", "negative.count=512"};
 
 constexpr std::array PRESETS = {
     Preset{"fast", "a quarter of the lights and clusters, smaller maps, a grid of 24 cells", FAST, 24},
@@ -43,6 +44,17 @@ void take_recipe(const std::string& name, screen::FrameOptions& options) {
   if (scheme == brought.of<VolumeOptions>().scheme.scheme) scheme = usual.of<VolumeOptions>().scheme.scheme;
   options.without.clear();
   screen::apply_recipe(name, options);
+}
+
+std::string idle_stage(const screen::FrameOptions& options, const std::string& name) {
+  const screen::Recipe recipe = screen::find_recipe(screen::recipe_of(options).name);
+  for (const screen::StageType* type : recipe.stages) {
+    if (name != type->name) continue;
+    const bool is_off = std::find(options.without.begin(), options.without.end(), name) != options.without.end();
+    if (!is_off && !type->role(options).active)
+      return fmt::format("stage {}: nothing to do in --gi {} with these options", name, recipe.name);
+  }
+  return {};
 }
 
 void reset_technique(Settings& settings) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "apps/demo/settings.h"
+#include "screen/frame/frame_options.h"
 #include "screen/frame/parameter.h"
 
 namespace volgi::demo {
@@ -22,6 +23,10 @@ void apply_preset(const std::string& name, Settings& settings);
 /// Another recipe, with all its stages. What the one before brought along goes with it, where nobody has chosen
 /// otherwise since. @throws Error(usage) naming those that there are.
 void take_recipe(const std::string& name, screen::FrameOptions& options);
+
+/// Why a stage of the recipe has nothing to do with these options, so that a switch for it would change nothing, as the
+/// interleaved gather where another is chosen; empty where it has, or where there is no such stage.
+std::string idle_stage(const screen::FrameOptions& options, const std::string& name);
 
 /// All parameters, the volume's scheme and its grid to what the recipe has.
 void reset_technique(Settings& settings);

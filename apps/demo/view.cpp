@@ -43,7 +43,7 @@ constexpr std::array VIEWS = {
     ViewInfo{View::negative_lights, "negative_lights", "Negative lights", "Shift+5",
              "places that take light away, a ring for each"},
     ViewInfo{View::low_resolution, "low_resolution", "Gathered again", "Shift+6",
-             "where a low resolution was not enough: estimated error, or pixels of their own"},
+             "which pixels neighbours did not say enough of: those gathered themselves, or the error estimated"},
     ViewInfo{View::texture, "texture", "Texture", "Shift+7", "any texture that a pass has written"},
 };
 

@@ -568,7 +568,7 @@ class DemoShaders : public DemoSession {
 };
 
 TEST_F(DemoShaders, AMistakeInThePictureIsAMessage) { break_and_mend("screen/base/direct.frag.glsl"); }
-TEST_F(DemoShaders, AMistakeInAStageIsAMessage) { break_and_mend("screen/gather/interleaved/geometry_blur.comp.glsl"); }
+TEST_F(DemoShaders, AMistakeInAStageIsAMessage) { break_and_mend("screen/gather/multires/light_cut.comp.glsl"); }
 TEST_F(DemoShaders, AMistakeInTheDisplayIsAMessage) { break_and_mend("screen/display/present.frag.glsl"); }
 
 TEST_F(DemoShaders, WhatIsWrittenIsSeen) {
