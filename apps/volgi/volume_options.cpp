@@ -53,7 +53,7 @@ const char* scheme_name(Scheme scheme) {
 void VolumeCommandOptions::add_to(CLI::App& command) {
   command
       .add_option("--grid", grid_cells,
-                  "cells along the longest axis of the scene (32, more where they would exceed 0.3 m)")
+                  "cells along the longest axis of the scene (48, more where they would exceed 0.3 m)")
       ->check(CLI::Range(1, VolumeOptions::kMaxGridCells));
   command.add_option("--scheme", scheme, "how the volume propagates light")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))

@@ -18,6 +18,7 @@ std::span<const Limit> needed_limits() {
       VOLGI_LIMIT(GL_MAX_IMAGE_UNITS, 4, "propagation/sweep"),
       VOLGI_LIMIT(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, 15, "screen/lights/rsm/virtual_lights"),
       VOLGI_LIMIT(GL_MAX_TEXTURE_IMAGE_UNITS, 16, "screen/base/compose"),
+      VOLGI_LIMIT(GL_MAX_TEXTURE_BUFFER_SIZE, 1 << 22, "screen/gather/multires/light_cut"),
       VOLGI_LIMIT(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, 32768, "propagation/sweep"),
       VOLGI_LIMIT(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, 1024, "propagation/sweep"),
       VOLGI_LIMIT(GL_MAX_COLOR_ATTACHMENTS, 5, "screen/base/gbuffer"),

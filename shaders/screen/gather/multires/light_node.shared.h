@@ -25,7 +25,7 @@ struct LightNode {
   float variance_m2;  // mean squared distance of its flux from its position; a square's is a sixth of its area
   float mean_normal;  // length of the mean normal by flux, 1 where all are alike
   int cluster;
-  float surface_m2;   // sum of its parts' areas
+  float surface_m2;  // sum of its parts' areas
 };
 #ifdef __cplusplus
 static_assert(sizeof(LightNode) == 64 && offsetof(LightNode, size_m2) == 32 && offsetof(LightNode, variance_m2) == 48);
