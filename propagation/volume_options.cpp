@@ -55,9 +55,9 @@ void warn_of_answer(const std::string& scene, const VolumeOptions& o, const Boun
   const bool all_asked = !o.bounces && !o.iterations && !o.passes_per_run && carries_sides(o.scheme.scheme);
   if (all_asked && !report.converged) {
     const auto most = [](glm::vec3 v) { return double(std::max({v.x, v.y, v.z})); };
-    warn_once(
+    warn_of_wrong_result(
         fmt::format("{}: the volume's bounces have not come to their end after {} orders, {:.3g} W of {:.3g} W are "
-                    "left: the picture is not right; --set solver=plain or --bounces N may do better",
+                    "left: the picture is not right; --set solver.cg=plain or --bounces N may do better",
                     scene, report.orders, most(report.left), most(report.sent)));
   }
   constexpr size_t LARGE = 20;  // a twentieth of all cells is a room
