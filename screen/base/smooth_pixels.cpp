@@ -32,7 +32,10 @@ void SmoothPixels::check(const SmoothPixelOptions& options) {
 }
 
 SmoothPixels::SmoothPixels(glm::ivec2 size, const SmoothPixelOptions& options)
-    : options_(options), size_(size), mean_(sizeof(float)) {
+    : options_(options),
+      size_(size),
+      gathered_step_(gl::Texture::make_2d(GL_R8UI, size.x, size.y)),
+      mean_(sizeof(float)) {
   check(options);
   for (int step = options.coarsest; step > 0; step /= 2) {
     lists_.emplace_back();
@@ -68,6 +71,7 @@ void SmoothPixels::run(const GBuffer& gbuffer, std::span<SmoothLight* const> lig
   }
   if (pictures.empty()) return;
   const Programs& programs = programs_for(pictures.size());
+  gathered_step_.clear({0.0f, 0.0f, 0.0f, 0.0f});
   int step_px = options_.coarsest;
   for (const WorkList& list : lists_) {
     {
@@ -91,6 +95,7 @@ void SmoothPixels::bind(const std::vector<SmoothPicture>& pictures) const {
     pictures[k].irradiance->bind(GLuint(SMOOTH_IRRADIANCE_UNIT + k));
     pictures[k].irradiance->bind_image(GLuint(SMOOTH_IRRADIANCE_IMAGE + k), GL_WRITE_ONLY);
   }
+  gathered_step_.bind_image(SMOOTH_STEP_IMAGE, GL_WRITE_ONLY);
   mean_.bind_storage(SMOOTH_MEAN_SLOT);
 }
 
@@ -143,7 +148,7 @@ double SmoothPixels::gathered_share() const {
 }
 
 size_t SmoothPixels::bytes() const {
-  size_t bytes = mean_.bytes();
+  size_t bytes = mean_.bytes() + size_t(size_.x) * size_t(size_.y);
   for (const WorkList& list : lists_) bytes += list.bytes();
   return bytes;
 }

@@ -7,13 +7,14 @@
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
 #include "screen/base/gbuffer.h"
+#include "screen/base/named_texture.h"
 #include "screen/base/work_list.h"
 
 namespace volgi::screen {
 
 /// One picture of light that changes smoothly over most of a surface.
 struct SmoothPicture {
-  const gl::Texture* irradiance;  // RGBA32F [W m^-2]; alpha 1 where it was gathered, 0 where interpolated
+  const gl::Texture* irradiance;  // RGBA32F [W m^-2], what is gathered and what is interpolated
   const gl::Texture* radiance;    // RGBA32F [W m^-2 sr^-1], of all pixels at the end; another texture
 };
 
@@ -50,6 +51,9 @@ class SmoothPixels {
 
   void run(const GBuffer& gbuffer, std::span<SmoothLight* const> lights, gl::PassTimer& timer);
 
+  /// R8UI: of the grid on which a pixel was gathered [pixels], 0 where neighbours said enough.
+  const gl::Texture& gathered_step() const { return gathered_step_; }
+  void list_textures(std::vector<NamedTexture>& list) const { list_texture(list, name, "step", gathered_step_); }
   /// Share of the pixels that were gathered. Waits for the GPU; after a frame, not in one.
   double gathered_share() const;
   size_t bytes() const;
@@ -68,6 +72,7 @@ class SmoothPixels {
   SmoothPixelOptions options_;
   glm::ivec2 size_;
   std::vector<WorkList> lists_;  // of each step, the coarsest first
+  gl::Texture gathered_step_;
   gl::Buffer mean_;
   std::vector<std::optional<Programs>> programs_;  // by the number of pictures
 };

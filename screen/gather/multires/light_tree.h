@@ -25,6 +25,7 @@ namespace volgi::screen {
 class LightTree {
  public:
   static constexpr const char* name = "screen/gather/multires/light_tree";
+  static constexpr const char* product_name = "the light tree";
   /// @param zone  z of the cut.
   explicit LightTree(float zone);
 
@@ -34,6 +35,9 @@ class LightTree {
   /// Buffers and uniforms of light_cut.glsl. @param program  in which it is compiled.
   void bind(const gl::Program& program) const;
 
+  const gl::Buffer& nodes() const { return nodes_; }  // shared::LightNode, as light_tree.glsl orders them
+  int top_level() const { return top_level_; }
+  int most_roots() const { return most_roots_; }  // room for topmost nodes; those that there are not are dark
   size_t bytes() const { return nodes_.bytes() + roots_.bytes() + leaf_clusters_.bytes() + chunk_counts_.bytes(); }
 
  private:

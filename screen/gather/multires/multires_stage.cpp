@@ -46,7 +46,7 @@ StageRole role(const FrameOptions& options) {
   if (options.of<GatherChoice>().stage != GatherChoice::Stage::multires) return {.active = false};
   SmoothPixels::check(options.of<SmoothPixelOptions>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
-              .makes = {product<SmoothGather>()},
+              .makes = {product<SmoothGather>(), product<LightTree>()},
               .adds = {{reflected_paths(options) | LightPaths{LightPath::emission_direct}}}};
   if (lights_are_subdivided(options)) r.needs.push_back(product<VirtualLightSubdivision>());
   return r;
@@ -69,6 +69,7 @@ class MultiresStage : public Stage {
       cut_.emplace(size_, clusters.shadow);
       gather_.emplace(SmoothGather{pixels_, *cut_});
     }
+    frame.lend(tree_);
     const bool with_direct = lights.emitted > 0;
     cut_->look_at(tree_, clusters, with_direct);
     if (gathered_later_) {
@@ -86,6 +87,7 @@ class MultiresStage : public Stage {
     report.memory_bytes += tree_.bytes() + pixels_.bytes() + (cut_ ? cut_->bytes() : 0);
   }
   void list_textures(std::vector<NamedTexture>& list) const override {
+    pixels_.list_textures(list);
     if (cut_) cut_->list_textures(list);
   }
 

@@ -11,6 +11,7 @@
 
 layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 layout(binding = SMOOTH_IRRADIANCE_IMAGE, rgba32f) uniform writeonly image2D irradiance[PICTURES];
+layout(binding = SMOOTH_STEP_IMAGE, r8ui) uniform writeonly uimage2D gathered_step;
 layout(std430, binding = PIXEL_LIST_SLOT) buffer PixelList { WorkListHead head; uint listed[]; };
 layout(std430, binding = SMOOTH_MEAN_SLOT) readonly buffer Mean { float mean_irradiance; };
 uniform int step_px;      // of the new grid
@@ -136,8 +137,9 @@ void main() {
   }
 #endif
   if (known_here) {
-    for (int i = 0; i < PICTURES; ++i) imageStore(irradiance[i], pixel, vec4(max(guess.irradiance[i], vec3(0.0)), 0.0));
+    for (int i = 0; i < PICTURES; ++i) imageStore(irradiance[i], pixel, vec4(max(guess.irradiance[i], vec3(0.0)), 1.0));
   } else {
+    imageStore(gathered_step, pixel, uvec4(step_px));
     uint slot;
     APPEND_TO_LIST(head, uint(LINEAR_GROUP), slot)
     listed[slot] = pack_pixel(pixel);

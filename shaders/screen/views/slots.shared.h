@@ -13,6 +13,10 @@
 #define TOTAL_FLUX_SLOT 1
 #define TOTAL_FLUX_BLOCK 0
 
+// light_tree_level
+#define VIEWED_NODES_SLOT 2
+#define LIGHTS_OF_NODES_SLOT 3
+
 // lobe_view
 #define VIEWED_RADIANCE_UNIT 0
 #define LOBE_RINGS 32
