@@ -574,7 +574,7 @@ constexpr std::array COMMANDS = {
     Command{"redo", "", "makes it again", redo},
     Command{"view", "NAME", "what is shown", view},
     Command{"texture", "NAME", "shows a texture that a pass has written", texture},
-    Command{"layer", "N|+N|-N", "of the texture, or the cluster", layer},
+    Command{"layer", "N|+N|-N", "of the texture, the cluster, or the light tree's level", layer},
     Command{"channel", "rgb|r|g|b|a|length", "of the texture", channel},
     Command{"range", "LOW,HIGH|auto", "of the texture's values", range},
     Command{"log", "[on|off]", "logarithmic scale of the texture", log_scale},

@@ -25,10 +25,11 @@ glm::vec2 mouse_at() {
 
 }  // namespace
 
-void Input::step(double seconds, glm::ivec2 picture, const std::vector<KeyPress>& keys) {
+void Input::step(double seconds, glm::ivec2 picture, const std::vector<KeyPress>& keys,
+                 const std::array<glm::vec2, 3>& pressed_at) {
   for (const KeyPress& press : keys) take(press);
   if (!viewer_.session.has_picture()) return;
-  mouse(picture);
+  mouse(picture, pressed_at);
   fly(seconds);
 }
 
@@ -94,14 +95,14 @@ void Input::drag(int button, glm::vec2 by, glm::vec2 at, glm::ivec2 picture) {
   }
 }
 
-void Input::mouse(glm::ivec2 picture) {
+void Input::mouse(glm::ivec2 picture, const std::array<glm::vec2, 3>& pressed_at) {
   const ImGuiIO& io = ImGui::GetIO();
   const glm::vec2 at = mouse_at();
   const bool over =
       !io.WantCaptureMouse && at.x >= 0.0f && at.y >= 0.0f && at.x < float(picture.x) && at.y < float(picture.y);
   viewer_.cursor = over ? std::optional(at) : std::nullopt;
   for (int button = 0; button < 3; ++button) {
-    if (over && held_ < 0 && ImGui::IsMouseClicked(button)) press(button, at);
+    if (over && held_ < 0 && ImGui::IsMouseClicked(button)) press(button, pressed_at[size_t(button)]);
     if (held_ == button && !ImGui::IsMouseDown(button)) {
       held_ = -1;
       handles_.release();

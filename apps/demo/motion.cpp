@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "propagation/volume_options.h"
+#include "screen/base/reflective_shadow_map.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/virtual_lights.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
@@ -18,6 +20,12 @@ void apply_motion_level(int level, screen::FrameOptions& options) {
   candidates = std::max(std::min(candidates, 2), candidates / 4);
   auto& texels = options.of<screen::AreaMapOptions>().texels;
   texels = std::max(std::min(texels, 32), texels / 2);
+  constexpr int ENOUGH_SHADOW = 256, ENOUGH_CELLS = 24;
+  auto& shadows = options.of<screen::ReflectiveShadowMap::Resolution>();
+  for (int* side : {&shadows.spot, &shadows.cube_face, &shadows.sun})
+    *side = std::max(std::min(*side, ENOUGH_SHADOW), *side / 2);
+  auto& cells = options.of<VolumeOptions>().grid_cells;
+  cells = std::max(std::min(cells, ENOUGH_CELLS), cells * 2 / 3);
   if (level < 3) return;
   auto& lights = options.of<screen::VirtualLightOptions>().count;
   lights = std::max(lights / 2, 1);

@@ -7,8 +7,8 @@
 namespace volgi::demo {
 
 /// How a frame is made while something moves. Each level costs less than the one before: all pixels; half of them on
-/// each axis; and fewer candidates for virtual lights and smaller maps of what their clusters see; and half as many of
-/// both. What is shown when nothing moves any more is always level 0.
+/// each axis; and fewer candidates for virtual lights, smaller maps of what lamps and clusters see, and fewer cells;
+/// and half as many lights and clusters. What is shown when nothing moves any more is always level 0.
 inline constexpr int MOTION_LEVELS = 4;
 glm::ivec2 motion_size(int level, glm::ivec2 size);
 void apply_motion_level(int level, screen::FrameOptions& options);

@@ -130,8 +130,7 @@ void Picture::show_texture(const screen::NamedTexture& texture, const ViewDetail
 namespace {
 
 /// By its name; else the one whose name has the words in it; else the first.
-/// Its alpha is 1 at pixels that were gathered, and 0 where neighbours said enough.
-constexpr const char* SMOOTH_LIGHT = "light_cut indirect irradiance";
+constexpr const char* SMOOTH_STEP = "smooth_pixels step";
 
 const screen::NamedTexture* find_texture(const std::vector<screen::NamedTexture>& all, std::string_view name) {
   const screen::NamedTexture* found = nullptr;
@@ -197,7 +196,11 @@ void Picture::show_lights(const screen::Frame& frame, const Camera& camera, View
   screen::LightsView::Shown shown;
   screen::LightsView::Options options;
   const auto* clusters = frame.products().find<screen::LightClusters>();
-  if (view == View::negative_lights) {
+  if (view == View::light_tree) {
+    if (const auto* tree = frame.products().find<screen::LightTree>())
+      shown.lights = &light_tree_level_.run(*tree, details.layer, timer);
+    options.mode = screen::LightsView::Mode::source;
+  } else if (view == View::negative_lights) {
     shown.negative = frame.products().find<screen::NegativeLights>();
   } else {
     shown.lights = frame.products().find<screen::VirtualLightListGl>();
@@ -232,10 +235,8 @@ void Picture::show(const screen::Frame& frame, const Scene& scene, const Camera&
       return show_named(frame, "paraboloid_depth_maps distance", one_number, settings, timer);
     case View::low_resolution:
       one_number.layer = 0;
-      if (find_texture(frame.textures(), SMOOTH_LIGHT) != nullptr) {
-        one_number.channel = int(screen::TextureView::Channel::alpha);
-        return show_named(frame, SMOOTH_LIGHT, one_number, settings, timer);
-      }
+      if (find_texture(frame.textures(), SMOOTH_STEP) != nullptr)
+        return show_named(frame, SMOOTH_STEP, one_number, settings, timer);
       return show_named(frame, "error estimate", one_number, settings, timer);
     default:
       break;
@@ -245,7 +246,7 @@ void Picture::show(const screen::Frame& frame, const Scene& scene, const Camera&
     show_sides(frame, camera, SIDE_COLOURS[size_t(details.voxel_colour)], details, settings, timer);
   if (view == View::coverage) show_sides(frame, camera, screen::VoxelView::Mode::coverage, details, settings, timer);
   if (view == View::lobe) show_lobe(frame, scene, camera, details, settings, timer);
-  if (view == View::lights || view == View::clusters || view == View::negative_lights)
+  if (view == View::lights || view == View::clusters || view == View::negative_lights || view == View::light_tree)
     show_lights(frame, camera, view, details, settings, timer);
 }
 

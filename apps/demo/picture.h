@@ -12,6 +12,7 @@
 #include "screen/frame/frame.h"
 #include "screen/views/error_view.h"
 #include "screen/views/gbuffer_view.h"
+#include "screen/views/light_tree_level.h"
 #include "screen/views/lights_view.h"
 #include "screen/views/lobe_view.h"
 #include "screen/views/texture_view.h"
@@ -24,7 +25,7 @@ namespace volgi::demo {
 /// Choices within a view; not kept between runs.
 struct ViewDetails {
   std::string texture;  // by its name; empty: the first
-  int layer = 0;        // of an array, a slice, or a cluster
+  int layer = 0;        // of an array, a slice, a cluster, or a level of the light tree
   int channel = 0;      // screen::TextureView's
   bool log_scale = false;
   std::optional<glm::vec2> range;    // none: by what is there
@@ -103,6 +104,7 @@ class Picture {
   screen::VoxelView voxel_view_;
   screen::LobeView lobe_view_;
   screen::LightsView lights_view_;
+  screen::LightTreeLevel light_tree_level_;
   screen::ErrorView error_view_;
   screen::Wipe wipe_;
   float error_floor_ = 0.0f;  // of the reference that was shown last

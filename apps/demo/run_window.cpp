@@ -208,7 +208,7 @@ void WindowLoop::frame() {
   glm::ivec2 picture = window;
   picture.x = std::max(1, window.x - panels_.width(window, window_.content_scale()));
   window_.begin_gui();
-  input_.step(seconds, picture, window_.take_keys());
+  input_.step(seconds, picture, window_.take_keys(), window_.pressed_at());
   viewer_.step(seconds);
   const std::uint64_t before = viewer_.session.frames();
   viewer_.draw(picture);

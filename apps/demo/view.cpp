@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/bounces/volume/frame_volume.h"
+#include "screen/gather/multires/light_tree.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 #include "screen/visibility/negative/negative_lights.h"
 
@@ -45,6 +46,9 @@ constexpr std::array VIEWS = {
     ViewInfo{View::low_resolution, "low_resolution", "Gathered again", "Shift+6",
              "which pixels neighbours did not say enough of: those gathered themselves, or the error estimated"},
     ViewInfo{View::texture, "texture", "Texture", "Shift+7", "any texture that a pass has written"},
+    ViewInfo{
+        View::light_tree, "light_tree", "Light tree", "Shift+8",
+        "nodes of one level in the colours of their clusters; keys [ and ] go through the levels, from the smallest"},
 };
 
 template <class T>
@@ -108,6 +112,8 @@ std::string why_not(View view, const screen::Frame& frame) {
     case View::clusters:
     case View::cluster_maps:
       return missing<screen::LightClusters>(frame, "no clusters in this recipe; hybrid and val have some");
+    case View::light_tree:
+      return missing<screen::LightTree>(frame, "no light tree in this recipe and with these options; hybrid has one");
     case View::negative_lights:
       return missing<screen::NegativeLights>(frame, "no negative lights in this recipe; --gi negative has some");
     default:

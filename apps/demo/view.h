@@ -27,6 +27,7 @@ enum class View {
   negative_lights,
   low_resolution,
   texture,
+  light_tree,
 };
 
 struct ViewInfo {

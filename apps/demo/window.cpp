@@ -73,7 +73,8 @@ Window::Window(const WindowOptions& options) : toolkit_(std::make_unique<Toolkit
   io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
   glfwSetCursorEnterCallback(window_, ImGui_ImplGlfw_CursorEnterCallback);
-  glfwSetMouseButtonCallback(window_, ImGui_ImplGlfw_MouseButtonCallback);
+  glfwSetMouseButtonCallback(window_, on_button);
+  glfwSetCursorPosCallback(window_, on_cursor);
   glfwSetScrollCallback(window_, ImGui_ImplGlfw_ScrollCallback);
   glfwSetCharCallback(window_, on_text);
   glfwSetKeyCallback(window_, on_key);
@@ -127,6 +128,18 @@ void Window::on_key(GLFWwindow* glfw_window, int key, int code, int action, int 
     if (action == GLFW_PRESS) window.pressed_.push_back(key);
   }
   ImGui_ImplGlfw_KeyCallback(glfw_window, key, code, action, modifiers);
+}
+
+void Window::on_cursor(GLFWwindow* window, double x, double y) {
+  static_cast<Window*>(glfwGetWindowUserPointer(window))->cursor_ = {float(x), float(y)};
+}
+
+/// glfwGetCursorPos would ask where the cursor is by now; events come in their order.
+void Window::on_button(GLFWwindow* glfw_window, int button, int action, int modifiers) {
+  Window& window = *static_cast<Window*>(glfwGetWindowUserPointer(glfw_window));
+  if (action == GLFW_PRESS && button >= 0 && size_t(button) < window.pressed_at_.size())
+    window.pressed_at_[size_t(button)] = window.cursor_;
+  ImGui_ImplGlfw_MouseButtonCallback(glfw_window, button, action, modifiers);
 }
 
 /// GLFW tells it right after the key.

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
@@ -52,12 +53,17 @@ class Window {
   /// Keys that went down, or repeat, since the last call: none is lost to a slow frame.
   std::vector<KeyPress> take_keys() { return std::exchange(keys_, {}); }
 
+  /// Where the left, right and middle button last went down: a slow frame sees the mouse where it has gone since.
+  const std::array<glm::vec2, 3>& pressed_at() const { return pressed_at_; }
+
   void begin_gui();
   /// Draws the panels over the window, and shows it.
   void end_gui();
 
  private:
   static void on_key(GLFWwindow* window, int key, int code, int action, int modifiers);
+  static void on_cursor(GLFWwindow* window, double x, double y);
+  static void on_button(GLFWwindow* window, int button, int action, int modifiers);
   static void on_text(GLFWwindow* window, unsigned character);
   static void on_drop(GLFWwindow* window, int count, const char** paths);
   static void on_scale(GLFWwindow* window, float x, float y);
@@ -75,6 +81,8 @@ class Window {
   };
   std::vector<Release> late_releases_;
   std::vector<int> pressed_;  // since ImGui's last frame began
+  glm::vec2 cursor_{0.0f};
+  std::array<glm::vec2, 3> pressed_at_{};
   float content_scale_ = 0.0f;
   bool gui_ = false;
   glm::ivec4 windowed_{0};  // place and size before it filled the screen

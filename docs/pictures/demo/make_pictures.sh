@@ -20,9 +20,10 @@ views() {
     view "$name" --view "$name"
   done
   view texture --do "texture screen/base/reflective_shadow_map light 0 albedo"
+  view light_tree --view light_tree --do "layer 3"
   view negative_lights --gi negative --view negative_lights
   sheet picture direct first_bounce higher_bounces emission albedo normals depth voxels coverage lobe lights clusters \
-    cluster_maps negative_lights low_resolution texture
+    cluster_maps negative_lights low_resolution texture light_tree
 }
 
 # All of them on one page.

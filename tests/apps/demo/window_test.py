@@ -390,7 +390,8 @@ class WindowCase(Case):
 class Views(WindowCase):
     KEYS = {"1": "picture", "2": "direct", "3": "first_bounce", "4": "higher_bounces", "5": "emission", "6": "albedo",
             "7": "normals", "8": "depth", "9": "voxels", "0": "coverage", "shift+1": "lobe", "shift+2": "lights",
-            "shift+3": "clusters", "shift+4": "cluster_maps", "shift+6": "low_resolution", "shift+7": "texture"}
+            "shift+3": "clusters", "shift+4": "cluster_maps", "shift+6": "low_resolution", "shift+7": "texture",
+            "shift+8": "light_tree"}
 
     def shown(self, window, key, view, *others):
         """Opens a view; it is neither blank nor like another one."""
