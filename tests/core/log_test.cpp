@@ -26,6 +26,15 @@ TEST(Log, QuietPrintsNothing) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
+TEST(Log, QuietDoesNotHideAWrongResult) {
+  ::testing::internal::CaptureStderr();
+  set_quiet(true);
+  warn_of_wrong_result("not right");
+  warn_of_wrong_result("not right");
+  set_quiet(false);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "volgi: warning: not right\n");
+}
+
 TEST(Progress, PrintsNothingWhereThereIsNoTerminal) {
   ::testing::internal::CaptureStderr();
   {
