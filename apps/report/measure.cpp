@@ -33,8 +33,8 @@ float exposure_of(const ReportReference& reference) {
 std::string command_of(const ReportScene& scene, const Setting& setting, const std::string& light,
                        const MeasureContext& context) {
   const bool frames = setting.renderer == "render";
-  return fmt::format("volgi {} {} {} --light {} --size {}x{}{} -o point.exr{}", setting.renderer, scene.path.string(),
-                     fmt::join(setting.options, " "), light, context.size.x, context.size.y,
+  return fmt::format("volgi {} {}{} {} --light {} --size {}x{}{} -o point.exr{}", setting.renderer, scene.path.string(),
+                     scene.light_arguments, fmt::join(setting.options, " "), light, context.size.x, context.size.y,
                      frames ? fmt::format(" --frames {}", context.frames) : "", frames ? " --stats point.json" : "");
 }
 

@@ -84,12 +84,20 @@ ReportScene::Stored computed_reference(const ReportScene& scene, glm::ivec2 size
     fs::create_directories(folder);
     write_exr(path, to_channels(path_trace(scene.scene, scene.camera, tracer)));
   }
-  return {path, fmt::format("volgi reference {} -o {} {}", scene.path.string(), path.string(), what)};
+  return {path, fmt::format("volgi reference {}{} -o {} {}", scene.path.string(), scene.light_arguments, path.string(),
+                            what)};
+}
+
+std::string hash_with(const std::string& scene, const AddedLight& added) {
+  std::uint64_t hash = content_hash(added.arguments, content_hash(scene));
+  for (const fs::path& file : added.files) hash = content_hash(hex(scene_hash(file)), hash);
+  return hex(hash);
 }
 
 }  // namespace
 
-ReportScene open_report_scene(const std::string& name_or_file, const fs::path& data, glm::ivec2 size) {
+ReportScene open_report_scene(const std::string& name_or_file, const fs::path& data, glm::ivec2 size,
+                              const AddedLight& added) {
   const Json list = listed_scenes(data);
   ReportScene out;
   const Json* listed = nullptr;
@@ -117,7 +125,13 @@ ReportScene open_report_scene(const std::string& name_or_file, const fs::path& d
   if (out.scene.cameras.empty()) warn_once(out.path.string() + ": no camera; the whole scene is framed");
   out.camera = out.scene.cameras.empty() ? framing_camera(out.scene.bounds_min, out.scene.bounds_max)
                                          : out.scene.cameras.front();
-  if (listed != nullptr) use_listed_scene(out, *listed, data, size);
+  if (!added.arguments.empty()) {
+    added.apply(out.scene);
+    out.light_arguments = added.arguments;
+    out.hash = hash_with(out.hash, added);
+  } else if (listed != nullptr) {
+    use_listed_scene(out, *listed, data, size);
+  }
   return out;
 }
 

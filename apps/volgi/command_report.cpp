@@ -19,6 +19,7 @@
 #include "apps/report/texts.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
+#include "apps/volgi/light_options.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -36,6 +37,7 @@ struct ReportOptions {
   std::string size;
   std::optional<int> frames;
   DeviceOptions device;
+  LightOptions lights;
   int repeat = 0;
   bool quick = false, page_only = false, quiet = false;
 };
@@ -126,9 +128,13 @@ int run(const ReportOptions& options, const std::string& command) {
   SceneOptions asked;
   asked.size_text = sweep.size;
   const glm::ivec2 size = asked.size();
+  AddedLight added{options.lights.arguments(), [&](Scene& scene) { options.lights.apply(scene); }, {}};
+  for (const fs::path& file : {fs::path(options.lights.sky), options.lights.lights}) {
+    if (fs::is_regular_file(file)) added.files.push_back(file);
+  }
   std::vector<ReportScene> scenes;
   if (!options.page_only) {
-    for (const std::string& scene : sweep.scenes) scenes.push_back(open_report_scene(scene, options.data, size));
+    for (const std::string& scene : sweep.scenes) scenes.push_back(open_report_scene(scene, options.data, size, added));
   } else if (!fs::exists(options.output / "points.jsonl")) {
     throw Error(ExitCode::bad_input,
                 (options.output / "points.jsonl").string() + ": not there; measure without --page-only");
@@ -175,6 +181,7 @@ void add_options(CLI::App& command, ReportOptions& o) {
       ->check(CLI::Range(1, 100000));
   command.add_option("--data", o.data, "folder with scenes.json and the stored references")->capture_default_str();
   o.device.add_to(command);
+  o.lights.add_to(command);
   command.add_option("--summary", o.summary, "also a Markdown summary, with a folder of pictures beside it")
       ->type_name("FILE.md");
   command

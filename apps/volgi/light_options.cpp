@@ -113,6 +113,19 @@ void LightOptions::set_sky(const std::string& text, double rotate_deg) {
   made_sky_.reset();
 }
 
+std::string LightOptions::arguments() const {
+  std::string text;
+  const auto add = [&](const char* option, const std::string& value) { text += fmt::format(" {} {}", option, value); };
+  for (const std::string& lamp : lamps) add("--lamp", lamp);
+  for (const std::string& sun : suns) add("--sun", sun);
+  if (!lights.empty()) add("--lights", lights.string());
+  if (!sky.empty()) add("--sky", sky);
+  if (sky_rotate_deg != 0.0) add("--sky-rotate", fmt::format("{}", sky_rotate_deg));
+  if (lamp_scale != 1.0) add("--lamp-scale", fmt::format("{}", lamp_scale));
+  if (materials != "gltf") add("--materials", materials);
+  return text;
+}
+
 void LightOptions::put_sky(Scene& scene) const {
   if (sky.empty()) return;
   const bool clear = sky.starts_with(kClearSky);

@@ -28,6 +28,8 @@ struct LightOptions {
   /// --sky and --sky-rotate in place of those that there are.
   void set_sky(const std::string& text, double rotate_deg);
   void add_to(CLI::App& command);
+  /// As a command line has them, a space before each: " --sky 1,1,1"; empty where nothing is asked for.
+  std::string arguments() const;
   /// Once after every SceneSource::at() or move().
   /// @throws Error(usage) naming the text that says nothing, Error(bad_input) as read_sky().
   void apply(Scene& scene) const;

@@ -10,6 +10,7 @@
 #include "apps/report/summary.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/sky.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/paths.h"
 
@@ -86,6 +87,28 @@ std::string findings_of(const Verdict& verdict, const std::string& technique) {
     if (finding.rfind(technique + ":", 0) == 0) return finding;
   }
   return "";
+}
+
+// A sky makes another scene of it: other points, no stored reference, and commands that say so.
+TEST_F(Measuring, AddedLightMakesAnotherScene) {
+  const fs::path data = test::source_dir() / "data";
+  const ReportScene alone = open_report_scene("cornell", data, glm::ivec2(192));
+  AddedLight added{" --sky 1,1,1", [](Scene& s) { s.sky = std::make_shared<Sky>(glm::vec3(1.0f)); }, {}};
+  ReportScene lit = open_report_scene("cornell", data, glm::ivec2(192), added);
+  EXPECT_TRUE(alone.all_bounces.has_value());
+  EXPECT_FALSE(lit.all_bounces.has_value());
+  EXPECT_NE(lit.hash, alone.hash);
+  EXPECT_NE(lit.scene.sky, nullptr);
+  added.arguments = " --sky 2,2,2";
+  EXPECT_NE(open_report_scene("cornell", data, glm::ivec2(192), added).hash, lit.hash);
+  const ReportReference reference = reference_of(lit, "full", false, glm::ivec2(16), {"--spp", "4"}, folder_);
+  EXPECT_NE(reference.command.find(" --sky 1,1,1 -o "), std::string::npos) << reference.command;
+  ReportScene dark = open_report_scene("cornell", data, glm::ivec2(16));
+  const ReportReference without = reference_of(dark, "full", false, glm::ivec2(16), {"--spp", "4"}, folder_);
+  double with_sky = 0.0, without_sky = 0.0;
+  for (const glm::vec3& p : reference.file.color.pixels) with_sky += double(p.x);
+  for (const glm::vec3& p : without.file.color.pixels) without_sky += double(p.x);
+  EXPECT_GT(with_sky, 1.1 * without_sky);
 }
 
 TEST_F(Measuring, BrokenTechniquesStandOutAndFiguresStayTheSame) {
