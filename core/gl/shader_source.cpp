@@ -67,7 +67,7 @@ class Expansion {
                                            "; rebuild the library with it under shaders/");
     }
     const size_t number = done_.size();
-    done_.push_back(name);
+    done_.push_back(file->name);  // `name` may lie in a text that is gone when the next file asks
     const std::string text = text_of(*file);
     std::string_view rest = text;
     if (includer.empty()) {
