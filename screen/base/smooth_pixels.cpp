@@ -65,35 +65,45 @@ const SmoothPixels::Programs& SmoothPixels::programs_for(size_t pictures) {
 }
 
 void SmoothPixels::run(const GBuffer& gbuffer, std::span<SmoothLight* const> lights, gl::PassTimer& timer) {
-  std::vector<SmoothPicture> pictures;
+  std::vector<const gl::Texture*> radiance;
+  std::vector<size_t> counts;
   for (const SmoothLight* light : lights) {
-    for (const SmoothPicture& picture : light->pictures()) pictures.push_back(picture);
+    const std::vector<const gl::Texture*> own = light->radiance();
+    radiance.insert(radiance.end(), own.begin(), own.end());
+    counts.push_back(own.size());
   }
-  if (pictures.empty()) return;
-  const Programs& programs = programs_for(pictures.size());
+  if (radiance.empty()) return;
+  make_room(radiance.size());
+  const Programs& programs = programs_for(radiance.size());
   gathered_step_.clear({0.0f, 0.0f, 0.0f, 0.0f});
   int step_px = options_.coarsest;
   for (const WorkList& list : lists_) {
     {
       const auto scope = timer.scope(name);
       gbuffer.bind();
-      bind(pictures);
+      bind(radiance.size());
       if (step_px < options_.coarsest && step_px * 2 == options_.coarsest) find_mean(programs.mean);
       refine(programs, step_px, list);
     }
-    for (SmoothLight* light : lights) light->gather(list, timer);
+    size_t first = 0;
+    for (size_t k = 0; k < lights.size(); first += counts[k++])
+      lights[k]->gather(list, std::span(irradiance_).subspan(first, counts[k]), timer);
     wait_for_pixels();
     step_px /= 2;
   }
   const auto scope = timer.scope(name);
   gbuffer.bind();
-  shade(programs.shade, pictures);
+  shade(programs.shade, radiance);
 }
 
-void SmoothPixels::bind(const std::vector<SmoothPicture>& pictures) const {
-  for (size_t k = 0; k < pictures.size(); ++k) {
-    pictures[k].irradiance->bind(GLuint(SMOOTH_IRRADIANCE_UNIT + k));
-    pictures[k].irradiance->bind_image(GLuint(SMOOTH_IRRADIANCE_IMAGE + k), GL_WRITE_ONLY);
+void SmoothPixels::make_room(size_t pictures) {
+  while (irradiance_.size() < pictures) irradiance_.push_back(gl::Texture::make_2d(GL_RGBA32F, size_.x, size_.y));
+}
+
+void SmoothPixels::bind(size_t pictures) const {
+  for (size_t k = 0; k < pictures; ++k) {
+    irradiance_[k].bind(GLuint(SMOOTH_IRRADIANCE_UNIT + k));
+    irradiance_[k].bind_image(GLuint(SMOOTH_IRRADIANCE_IMAGE + k), GL_WRITE_ONLY);
   }
   gathered_step_.bind_image(SMOOTH_STEP_IMAGE, GL_WRITE_ONLY);
   mean_.bind_storage(SMOOTH_MEAN_SLOT);
@@ -131,10 +141,10 @@ void SmoothPixels::find_mean(const gl::Program& program) {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }
 
-void SmoothPixels::shade(const gl::Program& program, const std::vector<SmoothPicture>& pictures) {
-  for (size_t k = 0; k < pictures.size(); ++k) {
-    pictures[k].irradiance->bind(GLuint(SMOOTH_IRRADIANCE_UNIT + k));
-    pictures[k].radiance->bind_image(GLuint(SMOOTH_IRRADIANCE_IMAGE + k), GL_WRITE_ONLY);
+void SmoothPixels::shade(const gl::Program& program, const std::vector<const gl::Texture*>& radiance) const {
+  for (size_t k = 0; k < radiance.size(); ++k) {
+    irradiance_[k].bind(GLuint(SMOOTH_IRRADIANCE_UNIT + k));
+    radiance[k]->bind_image(GLuint(SMOOTH_IRRADIANCE_IMAGE + k), GL_WRITE_ONLY);
   }
   program.use();
   gl::dispatch({size_.x, size_.y, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
@@ -147,8 +157,14 @@ double SmoothPixels::gathered_share() const {
   return gathered / (double(size_.x) * double(size_.y));
 }
 
+void SmoothPixels::list_textures(std::vector<NamedTexture>& list) const {
+  list_texture(list, name, "step", gathered_step_);
+  constexpr const char* NAMES[SMOOTH_PICTURES] = {"irradiance 0", "irradiance 1", "irradiance 2", "irradiance 3"};
+  for (size_t k = 0; k < irradiance_.size(); ++k) list_texture(list, name, NAMES[k], irradiance_[k]);
+}
+
 size_t SmoothPixels::bytes() const {
-  size_t bytes = mean_.bytes() + size_t(size_.x) * size_t(size_.y);
+  size_t bytes = mean_.bytes() + (1 + sizeof(glm::vec4) * irradiance_.size()) * size_t(size_.x) * size_t(size_.y);
   for (const WorkList& list : lists_) bytes += list.bytes();
   return bytes;
 }

@@ -12,20 +12,15 @@
 
 namespace volgi::screen {
 
-/// One picture of light that changes smoothly over most of a surface.
-struct SmoothPicture {
-  const gl::Texture* irradiance;  // RGBA32F [W m^-2], what is gathered and what is interpolated
-  const gl::Texture* radiance;    // RGBA32F [W m^-2 sr^-1], of all pixels at the end; another texture
-};
-
-/// Light that pixels need not all be gathered for (SmoothPixels).
+/// Light that changes smoothly over most of a surface, so that not all pixels need be gathered for it (SmoothPixels).
 class SmoothLight {
  public:
   virtual ~SmoothLight() = default;
-  /// Gathers the pixels of `list` into its pictures' irradiance. The G-buffer is bound.
-  virtual void gather(const WorkList& list, gl::PassTimer& timer) = 0;
-  /// Those of this frame. At most SMOOTH_PICTURES of all lights together.
-  virtual std::vector<SmoothPicture> pictures() const = 0;
+  /// Its pictures in this frame, RGBA32F [W m^-2 sr^-1]; at most SMOOTH_PICTURES of all lights together.
+  virtual std::vector<const gl::Texture*> radiance() const = 0;
+  /// Gathers the pixels of `list`. The G-buffer is bound.
+  /// @param irradiance  RGBA32F [W m^-2], one for each of radiance(): where to.
+  virtual void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) = 0;
 };
 
 struct SmoothPixelOptions {
@@ -53,7 +48,7 @@ class SmoothPixels {
 
   /// R8UI: of the grid on which a pixel was gathered [pixels], 0 where neighbours said enough.
   const gl::Texture& gathered_step() const { return gathered_step_; }
-  void list_textures(std::vector<NamedTexture>& list) const { list_texture(list, name, "step", gathered_step_); }
+  void list_textures(std::vector<NamedTexture>& list) const;
   /// Share of the pixels that were gathered. Waits for the GPU; after a frame, not in one.
   double gathered_share() const;
   size_t bytes() const;
@@ -63,15 +58,17 @@ class SmoothPixels {
     gl::Program first, along, between, last_along, last_between, mean, shade;
   };
   const Programs& programs_for(size_t pictures);
-  void bind(const std::vector<SmoothPicture>& pictures) const;
+  void make_room(size_t pictures);
+  void bind(size_t pictures) const;
   void refine(const Programs& programs, int step_px, const WorkList& list);
   void dispatch(const gl::Program& program, int step_px, int every, glm::ivec2 odd) const;
   void find_mean(const gl::Program& program);
-  void shade(const gl::Program& program, const std::vector<SmoothPicture>& pictures);
+  void shade(const gl::Program& program, const std::vector<const gl::Texture*>& radiance) const;
 
   SmoothPixelOptions options_;
   glm::ivec2 size_;
-  std::vector<WorkList> lists_;  // of each step, the coarsest first
+  std::vector<WorkList> lists_;          // of each step, the coarsest first
+  std::vector<gl::Texture> irradiance_;  // of each picture, one light's after the other's
   gl::Texture gathered_step_;
   gl::Buffer mean_;
   std::vector<std::optional<Programs>> programs_;  // by the number of pictures

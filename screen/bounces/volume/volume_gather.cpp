@@ -35,11 +35,6 @@ void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Volum
     draw(gbuffer, timer);
   } else {
     const std::array<SmoothLight*, 2> lights{&with->first, this};
-    if (indirect_irradiance_.id() == 0) {
-      const glm::ivec2 size(direct_.size());
-      direct_irradiance_ = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
-      indirect_irradiance_ = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
-    }
     with->pixels.run(gbuffer, lights, timer);
   }
   volume_ = nullptr;
@@ -64,7 +59,7 @@ void VolumeGather::draw(const GBuffer& gbuffer, gl::PassTimer& timer) {
   gl::draw_fullscreen_triangle();
 }
 
-void VolumeGather::gather(const WorkList& list, gl::PassTimer& timer) {
+void VolumeGather::gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const bool apart = volume_->direct_is_apart;
   std::optional<gl::Program>& program = listed_[apart ? 1 : 0];
@@ -74,15 +69,15 @@ void VolumeGather::gather(const WorkList& list, gl::PassTimer& timer) {
   }
   bind_volume(*program);
   list.bind(PIXEL_LIST_SLOT);
-  indirect_irradiance_.bind_image(GATHERED_INDIRECT_IMAGE, GL_WRITE_ONLY);
-  if (apart) direct_irradiance_.bind_image(GATHERED_DIRECT_IMAGE, GL_WRITE_ONLY);
+  irradiance[0].bind_image(GATHERED_INDIRECT_IMAGE, GL_WRITE_ONLY);
+  if (apart) irradiance[1].bind_image(GATHERED_DIRECT_IMAGE, GL_WRITE_ONLY);
   program->use();
   list.dispatch();
 }
 
-std::vector<SmoothPicture> VolumeGather::pictures() const {
-  std::vector<SmoothPicture> pictures{{&indirect_irradiance_, &indirect_}};
-  if (volume_->direct_is_apart) pictures.push_back({&direct_irradiance_, &direct_});
+std::vector<const gl::Texture*> VolumeGather::radiance() const {
+  std::vector<const gl::Texture*> pictures{&indirect_};
+  if (volume_->direct_is_apart) pictures.push_back(&direct_);
   return pictures;
 }
 

@@ -36,7 +36,7 @@ class VolumeGather : private SmoothLight {
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
-  size_t bytes() const { return bytes_for(direct_.size()) * (indirect_irradiance_.id() != 0 ? 2 : 1); }
+  size_t bytes() const { return bytes_for(direct_.size()); }
   void list_textures(std::vector<NamedTexture>& list) const {
     list_texture(list, name, "direct", direct_);
     list_texture(list, name, "indirect", indirect_);
@@ -44,14 +44,13 @@ class VolumeGather : private SmoothLight {
   static size_t bytes_for(glm::ivec2 size) { return size_t(size.x) * size_t(size.y) * 2 * sizeof(glm::vec4); }
 
  private:
-  void gather(const WorkList& list, gl::PassTimer& timer) override;
-  std::vector<SmoothPicture> pictures() const override;
+  std::vector<const gl::Texture*> radiance() const override;
+  void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) override;
   void draw(const GBuffer& gbuffer, gl::PassTimer& timer);
   void bind_volume(const gl::Program& program) const;
   void sum(const gl::Buffer& irradiance) const;
 
   gl::Texture direct_, indirect_;
-  gl::Texture direct_irradiance_, indirect_irradiance_;  // with other smooth light only
   gl::Framebuffer framebuffer_;
   gl::Buffer sum_, partials_;  // over all sides: what is dim is judged by their mean
   gl::Program program_, sum_sides_, sum_partials_;

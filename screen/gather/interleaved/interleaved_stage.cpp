@@ -17,17 +17,13 @@ using Options = AreaLightGatherOptions;
 
 constexpr Parameter PARAMETERS[] = {
     number<Options>(
-        {"val.interleave", "pixels", "blocks of n x n share the lights: 1, 2, 4 or 8"}, {1, 8},
+        {"val.interleave", "pixels", "gather=interleaved: blocks of n x n share the lights: 1, 2, 4 or 8"}, {1, 8},
         [](Options& o) -> auto& { return o.interleave; }),
     number<Options>(
-        {"val.exact", "rows", "as many pixels as so many rows hold get every light, the worst ones"}, {0, 65536},
-        [](Options& o) -> auto& { return o.exact_rows; }),
+        {"val.exact", "rows",
+         "gather=interleaved: as many pixels as so many rows hold get every light, the worst ones"},
+        {0, 65536}, [](Options& o) -> auto& { return o.exact_rows; }),
 };
-
-LightPaths reflected_paths(const FrameOptions& options) {
-  const LightPaths punctual{LightPath::punctual_first};
-  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
-}
 
 StageRole role(const FrameOptions& options) {
   if (options.of<GatherChoice>().stage != GatherChoice::Stage::interleaved) return {.active = false};

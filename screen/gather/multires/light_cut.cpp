@@ -13,11 +13,7 @@ gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, s
 }  // namespace
 
 LightCut::LightCut(glm::ivec2 size, const AreaLightShadow& shadow)
-    : shadow_define_(shadow.define()),
-      direct_(picture(size)),
-      indirect_(picture(size)),
-      direct_irradiance_(picture(size)),
-      indirect_irradiance_(picture(size)) {}
+    : shadow_define_(shadow.define()), direct_(picture(size)), indirect_(picture(size)) {}
 
 void LightCut::look_at(const LightTree& tree, const LightClusters& clusters, bool with_direct) {
   tree_ = &tree;
@@ -35,25 +31,25 @@ const gl::Program& LightCut::program() {
   return *program;
 }
 
-void LightCut::gather(const WorkList& list, gl::PassTimer& timer) {
+void LightCut::gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const gl::Program& cut = program();
   list.bind(PIXEL_LIST_SLOT);
   tree_->bind(cut);
   clusters_->area_lights.buffer().bind_uniform(AREA_LIGHTS_BLOCK);
   clusters_->shadow.bind(clusters_->maps, cut);
-  indirect_irradiance_.bind_image(CUT_INDIRECT_IMAGE, GL_WRITE_ONLY);
-  if (with_direct_) direct_irradiance_.bind_image(CUT_DIRECT_IMAGE, GL_WRITE_ONLY);
+  irradiance[0].bind_image(CUT_INDIRECT_IMAGE, GL_WRITE_ONLY);
+  if (with_direct_) irradiance[1].bind_image(CUT_DIRECT_IMAGE, GL_WRITE_ONLY);
   cut.use();
   list.dispatch();
 }
 
-std::vector<SmoothPicture> LightCut::pictures() const {
-  std::vector<SmoothPicture> pictures{{&indirect_irradiance_, &indirect_}};
-  if (with_direct_) pictures.push_back({&direct_irradiance_, &direct_});
+std::vector<const gl::Texture*> LightCut::radiance() const {
+  std::vector<const gl::Texture*> pictures{&indirect_};
+  if (with_direct_) pictures.push_back(&direct_);
   return pictures;
 }
 
-size_t LightCut::bytes() const { return 4 * 16 * size_t(direct_.size().x) * size_t(direct_.size().y); }
+size_t LightCut::bytes() const { return 2 * 16 * size_t(direct_.size().x) * size_t(direct_.size().y); }
 
 }  // namespace volgi::screen

@@ -12,8 +12,8 @@
 namespace volgi::screen {
 
 /// Pass "screen/gather/multires/light_cut": irradiance of all virtual lights at the pixels of a list, by a soft cut
-/// through their tree (LightTree), each node seen as far as its cluster is; parts of a light, which light only what is
-/// near, are seen from everywhere, as a cluster's map knows nothing of such ways.
+/// through their tree (LightTree), each node seen as far as its cluster is; what is nearer than half of a light's size
+/// sees its parts in any case, as a cluster's map, drawn from elsewhere, knows nothing of such ways.
 /// Cost a pixel: the nodes of its cut, and a look-up for each cluster in front of it.
 class LightCut final : public SmoothLight {
  public:
@@ -24,15 +24,13 @@ class LightCut final : public SmoothLight {
   /// What gather() shows from now on; must be there as long as it does.
   /// @param with_direct  some lights stand for emission.
   void look_at(const LightTree& tree, const LightClusters& clusters, bool with_direct);
-  void gather(const WorkList& list, gl::PassTimer& timer) override;
-  std::vector<SmoothPicture> pictures() const override;
+  std::vector<const gl::Texture*> radiance() const override;
+  void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) override;
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F: the first reflection of punctual light
   size_t bytes() const;
   void list_textures(std::vector<NamedTexture>& list) const {
-    if (with_direct_) list_texture(list, name, "direct irradiance", direct_irradiance_);
-    list_texture(list, name, "indirect irradiance", indirect_irradiance_);
     if (with_direct_) list_texture(list, name, "direct", direct_);
     list_texture(list, name, "indirect", indirect_);
   }
@@ -44,7 +42,7 @@ class LightCut final : public SmoothLight {
   const LightTree* tree_ = nullptr;
   const LightClusters* clusters_ = nullptr;
   bool with_direct_ = false;
-  gl::Texture direct_, indirect_, direct_irradiance_, indirect_irradiance_;
+  gl::Texture direct_, indirect_;
   std::array<std::optional<gl::Program>, 2> programs_;  // without and with direct light
 };
 

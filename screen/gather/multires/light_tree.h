@@ -17,11 +17,11 @@ namespace volgi::screen {
 ///
 /// The cut through it (shaders/screen/gather/multires/light_cut.glsl) is soft: a point at squared distance d^2 takes of
 /// a node the share that rises from 0 at d^2 = z s to 1 at 2 z s, and of its parts the rest, s being the node's size:
-/// its area, or six times the variance of its flux in space, which is the area of a square that is lit evenly. Nothing
-/// pops as a point or a light moves. Nodes whose normals have a mean shorter than 0.95, by flux, or that send light of
-/// two kinds, have no share anywhere. Nichols' condition (2010, eq. 4.7 and 4.8) descends by how much a patch's own
-/// size bends the form factor as well, but at once.
-/// Cost: clusters for each sub-light; 4 / 3 nodes a sub-light, and dark ones where clusters do not fill their nodes.
+/// the area of its leaves, or that of a disk that is spread as they are, 2 pi times the variance of its flux in space.
+/// Nothing pops as a point or a light moves. Nodes whose normals have a mean shorter than 0.95, by flux, or that send
+/// light of two kinds, have no share anywhere. Nichols' condition (2010, eq. 4.7 and 4.8) descends by how much a
+/// patch's own size bends the form factor as well, but at once. Cost: clusters for each sub-light; 4 / 3 nodes a
+/// sub-light, and dark ones where clusters do not fill their nodes.
 class LightTree {
  public:
   static constexpr const char* name = "screen/gather/multires/light_tree";

@@ -37,11 +37,6 @@ constexpr Parameter PARAMETERS[] = {
         [](TreeOptions& o) -> auto& { return o.zone; }),
 };
 
-LightPaths reflected_paths(const FrameOptions& options) {
-  const LightPaths punctual{LightPath::punctual_first};
-  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
-}
-
 StageRole role(const FrameOptions& options) {
   if (options.of<GatherChoice>().stage != GatherChoice::Stage::multires) return {.active = false};
   SmoothPixels::check(options.of<SmoothPixelOptions>());

@@ -26,11 +26,6 @@ constexpr Parameter PARAMETERS[] = {
         [](Options& o) -> auto& { return o.distance; }),
 };
 
-LightPaths reflected_paths(const FrameOptions& options) {
-  const LightPaths punctual{LightPath::punctual_first};
-  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
-}
-
 StageRole role(const FrameOptions& options) {
   return {.needs = {product<VirtualLightListGl>()},
           .uses = {product<NegativeLights>()},

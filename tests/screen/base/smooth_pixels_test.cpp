@@ -22,22 +22,24 @@ using Function = std::function<float(int x, int y)>;
 class KnownLight : public screen::SmoothLight {
  public:
   KnownLight(glm::ivec2 size, Function f)
-      : size_(size),
-        f_(std::move(f)),
-        irradiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-        radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)) {
-    irradiance_.clear({-1.0f, -1.0f, -1.0f, -1.0f});
+      : size_(size), f_(std::move(f)), radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)) {
+    radiance_.clear({-1.0f, -1.0f, -1.0f, -1.0f});
   }
-  void gather(const screen::WorkList& list, gl::PassTimer&) override {
+  void gather(const screen::WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer&) override {
     for (const GLuint packed : list.entries()) {
       const int x = int(packed & 0xffffu), y = int(packed >> 16);
       const glm::vec4 value(f_(x, y));
-      glTextureSubImage2D(irradiance_.id(), 0, x, y, 1, 1, GL_RGBA, GL_FLOAT, &value);
+      glTextureSubImage2D(irradiance[0].id(), 0, x, y, 1, 1, GL_RGBA, GL_FLOAT, &value);
       ++gathered;
     }
   }
-  std::vector<screen::SmoothPicture> pictures() const override { return {{&irradiance_, &radiance_}}; }
-  std::vector<glm::vec4> irradiance() const { return texels(irradiance_); }
+  std::vector<const gl::Texture*> radiance() const override { return {&radiance_}; }
+  /// Of an albedo of 1 everywhere, which the G-buffer holds exactly.
+  std::vector<glm::vec4> irradiance() const {
+    std::vector<glm::vec4> of_radiance = texels(radiance_);
+    for (glm::vec4& p : of_radiance) p *= glm::pi<float>();
+    return of_radiance;
+  }
   float truth(int x, int y) const { return f_(x, y); }
 
   int gathered = 0;
@@ -45,7 +47,7 @@ class KnownLight : public screen::SmoothLight {
  private:
   glm::ivec2 size_;
   Function f_;
-  gl::Texture irradiance_, radiance_;
+  gl::Texture radiance_;
 };
 
 class SmoothPixelsTest : public GlTest {
@@ -53,7 +55,7 @@ class SmoothPixelsTest : public GlTest {
   /// A wall that fills the picture.
   static Scene wall() {
     Scene scene;
-    add_quad(scene, add_material(scene, glm::vec3(0.5f)), {-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
+    add_quad(scene, add_material(scene, glm::vec3(1.0f)), {-3, -3, 0}, {6, 0, 0}, {0, 6, 0});
     update_bounds(scene);
     return scene;
   }

@@ -26,6 +26,7 @@ uint nearest_cluster(LightNode leaf) {
 }
 
 void main() {
+  if (int(group_index()) * LEAVES_PER_CHUNK >= leaf_count) return;  // of a whole group
   int t = int(gl_LocalInvocationIndex);
   for (int k = t; k < cluster_count; k += LEAVES_PER_CHUNK) own_counts[k] = 0;
   barrier();
