@@ -109,6 +109,7 @@ void SideSearch::prepare(int axis, const SideColumns* columns) {
   a.slope_b = normal[shared::axis_b(axis)] / normal[axis];
   a.slope_c = normal[shared::axis_c(axis)] / normal[axis];
   a.slope = std::abs(a.slope_b) + std::abs(a.slope_c);
+  a.to_face = steps_to_face(shared::falls_below_centre(normal, axis));
   // Where the normal runs up the axis, the cells above the surface see it; they have it at their lower face.
   const bool up = normal[axis] > 0.0f;
   a.faces[0] = shared::face_of(axis, !up);
@@ -191,7 +192,8 @@ inline bool SideSearch::any_side_around(const Column& own, int way) const {
   if (columns_ == nullptr) return true;
   const Axis& a = axes_[axis];
   const float slope = a.slope > 0.0f ? a.slope + 1e-3f : 0.0f;  // rounding
-  const int first = face_of_depth_quick(own.depth - slope) - 1, last = face_of_depth_quick(own.depth + slope) + 1;
+  const int first = face_of_depth_quick(own.depth - slope, a.to_face) - 1,
+            last = face_of_depth_quick(own.depth + slope, a.to_face) + 1;
   const SideColumns::Columns& columns = a.columns[way];
   return (columns.around(columns.offset(own.b, own.c), first - a.below[way]) & ((1u << (last - first + 1)) - 1)) != 0;
 }
@@ -213,7 +215,7 @@ inline SideSearch::Column SideSearch::column_at(const glm::vec3& point, int b, i
   const Axis& a = axes_[axis];
   const float depth = point[axis] + (a.slope_b * (point[(axis + 1) % 3] - float(b) - 0.5f) +
                                      a.slope_c * (point[(axis + 2) % 3] - float(c) - 0.5f));
-  return {b, c, face_of_depth_quick(depth), depth};
+  return {b, c, face_of_depth_quick(depth, a.to_face), depth};
 }
 
 template <int axis>
@@ -274,6 +276,7 @@ void SideSearch::find_around_quick(const glm::vec3& point, const glm::ivec3& own
                           a.slope_b,
                           a.slope_c,
                           kFarthest,
+                          a.to_face,
                           a.columns[0].stride_b,
                           a.columns[0].stride_c,
                           {a.columns[0].column_bytes + offset, a.columns[1].column_bytes + offset},

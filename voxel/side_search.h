@@ -97,6 +97,7 @@ class SideSearch {
   /// What a search along one axis needs to know of the plane.
   struct Axis {
     float slope_b, slope_c, slope;  // slope: at most this between neighbouring columns
+    int to_face;                    // steps_to_face()
     int faces[2];                   // of the cells that see it: along the normal, against it
     int below[2];                   // how far these are below the face between the two
     SideColumns::Columns columns[2];

@@ -16,7 +16,7 @@ unsigned columns_around_baseline(const AroundQuery& q, AroundColumns& out) {
                                    q.slope_c * (q.point_c - (q.low_c + float(j)) - 0.5f));
     if (!(std::max(q.low - depth, depth - (q.low + 1.0f)) <= q.farthest)) continue;
     out.depth[k] = depth;
-    out.face[k] = face_of_depth_quick(depth);
+    out.face[k] = face_of_depth_quick(depth, q.to_face);
     for (int way = 0; way < 2; ++way) {
       const int first = out.face[k] - q.below[way];
       std::uint32_t word;

@@ -10,6 +10,7 @@ struct AroundQuery {
   float low, low_b, low_c;            // of the cell that the point is in
   float slope_b, slope_c;             // of the plane
   float farthest;                     // columns whose depth is farther from the cell are left out
+  int to_face;                        // steps_to_face()
   int stride_b, stride_c;             // bytes between columns
   const unsigned char* own_bytes[2];  // by way: bits of the own column (SideColumns)
   int below[2];                       // cells between the plane's face and the first of the three

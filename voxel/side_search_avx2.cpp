@@ -7,11 +7,13 @@ namespace volgi {
 
 namespace {
 
+constexpr float kSteps = 384.0f;  // SLICE_STEPS
+
 /// shared::face_of_depth.
-__m256i faces_of_depths(__m256 depth) {
-  const __m256 scaled = _mm256_add_ps(_mm256_mul_ps(depth, _mm256_set1_ps(8192.0f)), _mm256_set1_ps(0.5f));
-  const __m256i snapped = _mm256_cvttps_epi32(_mm256_floor_ps(scaled));
-  return _mm256_srai_epi32(_mm256_add_epi32(snapped, _mm256_set1_epi32(4096)), 13);
+__m256i faces_of_depths(__m256 depth, int to_face) {
+  const __m256 scaled = _mm256_add_ps(_mm256_mul_ps(depth, _mm256_set1_ps(kSteps)), _mm256_set1_ps(0.5f));
+  const __m256 to_next = _mm256_add_ps(_mm256_floor_ps(scaled), _mm256_set1_ps(float(to_face) + 0.5f));
+  return _mm256_cvttps_epi32(_mm256_floor_ps(_mm256_mul_ps(to_next, _mm256_set1_ps(1.0f / kSteps))));
 }
 
 __m256 part_of_depth(float point, float low, float slope, __m256i step) {
@@ -31,7 +33,7 @@ unsigned columns_around_avx2(const AroundQuery& q, AroundColumns& out) {
   const __m256 outside =
       _mm256_max_ps(_mm256_sub_ps(_mm256_set1_ps(q.low), depth), _mm256_sub_ps(depth, _mm256_set1_ps(q.low + 1.0f)));
   const __m256i reached = _mm256_castps_si256(_mm256_cmp_ps(outside, _mm256_set1_ps(q.farthest), _CMP_LE_OQ));
-  const __m256i face = faces_of_depths(depth);
+  const __m256i face = faces_of_depths(depth, q.to_face);
   _mm256_storeu_ps(out.depth, depth);
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out.face), face);
   const __m256i columns = _mm256_add_epi32(_mm256_mullo_epi32(step_b, _mm256_set1_epi32(q.stride_b)),

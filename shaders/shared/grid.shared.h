@@ -64,14 +64,6 @@ SHARED_FUNCTION ivec3 face_coord(Grid grid, int axis, int index) {
   return face_cell;
 }
 
-// The face whose two cell centres a depth `x` (cell units along the axis) lies between. Depths within 2^-14 cells of a
-// centre are snapped first, so that points of one wall through cell centres agree. For finding sides again; which faces
-// are blocked, the slicing passes decide exactly (slice.frag.glsl).
-SHARED_FUNCTION int face_of_depth(float x) {
-  float snapped = floor(x * 8192.0f + 0.5f) / 8192.0f;
-  return int(floor(snapped + 0.5f));
-}
-
 // Vertices as the slicing passes see them: rounded to 1/384 of a cell, so that which columns a triangle covers and
 // which cell centres lie behind it can be answered exactly. The answers then are about one surface, and what is closed
 // in the scene is closed in the volume. 384 = 2^7 3: the centres of cells and the nodes of the lattice three times
@@ -79,6 +71,23 @@ SHARED_FUNCTION int face_of_depth(float x) {
 // 2^16.7, cross products under 2^34.4 and the terms of a determinant under 2^51.1: exact in double precision.
 #define SLICE_STEPS 384  // of a cell
 SHARED_FUNCTION ivec3 slice_vertex(vec3 cell) { return ivec3(floor(cell * float(SLICE_STEPS) + 0.5f)); }
+
+// Which way a plane through a cell's centre falls: below it (true), or above, as all centres count as moved by (e, e^2,
+// e^3) (lattice.glsl). `normal` of either side.
+SHARED_FUNCTION bool falls_below_centre(vec3 normal, int axis) {
+  const float nothing = 1e-4f;  // of a cell in some hundred: less than vertices are rounded by
+  float first = abs(normal.x) > nothing ? normal.x : abs(normal.y) > nothing ? normal.y : normal.z;
+  return first * normal[axis] > 0.0f;
+}
+
+// The face whose two cell centres a depth `x` (cell units along the axis) lies between, rounded as vertices are, so
+// that a wall through cell centres is looked for where it is: beside it may be another one that faces alike. For
+// finding sides again; which faces are blocked, the slicing passes decide exactly (slice.frag.glsl).
+SHARED_FUNCTION int face_of_depth(float x, bool below_centre) {
+  float steps = floor(x * float(SLICE_STEPS) + 0.5f);
+  float to_next = 0.5f * float(SLICE_STEPS) + (below_centre ? -0.5f : 0.5f);
+  return int(floor((steps + to_next) * (1.0f / float(SLICE_STEPS))));
+}
 
 SHARED_END
 #endif

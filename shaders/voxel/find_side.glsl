@@ -22,6 +22,7 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_m
   int c = axis_c(axis);
   int up = normal[axis] > 0.0 ? 1 : 0;
   int face = 2 * axis + 1 - up;
+  bool below = falls_below_centre(normal, axis);
   ivec3 own = ivec3(floor(point));
   ivec2 found = ivec2(-1);
   for (int k = 0; k < 27 && found.x < 0; ++k) {
@@ -36,7 +37,7 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_m
     float away = abs(depth - point[axis]);
     if (away > 2.0 && away < 4.0) place_matters = true;
     if (away > 3.0) continue;
-    cell[axis] = face_of_depth(depth) + (step == 0 ? 0 : step == 1 ? 1 : -1) - 1 + up;
+    cell[axis] = face_of_depth(depth, below) + (step == 0 ? 0 : step == 1 ? 1 : -1) - 1 + up;
     if (!cell_inside(grid, cell)) continue;
     uvec2 own_sides = cell_sides[cell_index(grid, cell)];
     if (!has_side(own_sides, face)) continue;

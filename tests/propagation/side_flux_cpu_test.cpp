@@ -5,6 +5,8 @@
 
 #include "propagation/bounces_cpu.h"
 #include "tests/propagation/cpu_rooms.h"
+#include "voxel/emitter_pieces.h"
+#include "voxel/voxelize_cpu.h"
 
 namespace volgi::test {
 namespace {
@@ -99,6 +101,31 @@ TEST(SideFluxCpu, TiltedSurfacesSplit) {
   deposit(voxels, {{{glm::vec3(0.01f, 0.01f, 0.1f), n, glm::vec3(3.0f)}}}, flux, lost);
   EXPECT_NEAR(flux[0].x, 1.0f, 1e-5f);
   EXPECT_NEAR(flux[1].x, 2.0f, 1e-5f);
+}
+
+// A lamp thinner than a cell, one face of it through the centres of cells: its light stays outside. The inside of the
+// other face looks the same way, and is where the face would be if it fell to the other side of the centres.
+TEST(SideFluxCpu, ThinBodiesSendTheirLightOutwards) {
+  const Grid grid = unit_grid(16);
+  const float h = grid.cell_size_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (float low : {-0.001f, -1e-6f, 0.0f, 1e-6f, 0.001f, 0.2f}) {
+      Scene scene;
+      glm::vec3 half(3.0f * h), centre(0.0f);
+      half[axis] = 0.4f * h;
+      centre[axis] = (0.5f + low + 0.4f) * h;  // the grid's middle is a corner of cells
+      add_box_inside(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(1.0f)), centre, -half);  // fronts outwards
+      const VoxelGrid voxels = voxelize_cpu(scene, grid);
+      Powers flux(voxels.side_count(), glm::vec4(0.0f));
+      glm::vec3 lost(0.0f);
+      deposit(voxels, emitter_pieces(scene, grid), flux, lost);
+      EXPECT_EQ(lost, glm::vec3(0.0f));
+      for (size_t i = 0; i < flux.size(); ++i) {
+        if (voxels.sides()[i].front == 1) continue;
+        EXPECT_EQ(flux[i].x, 0.0f) << axis << ", " << low << ": side " << i;
+      }
+    }
+  }
 }
 
 /// E of every side is the mean over what light can reach within the 3^3 cells.

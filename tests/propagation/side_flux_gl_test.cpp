@@ -102,6 +102,9 @@ TEST_F(SideFluxGlTest, AsOnTheCpu) {
                     16);
   add_square(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(9.0f)), {0.1f, 0.05f, 0.0f}, {1, 2, 3}, 0.3f);
   add_square(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(9.0f)), {0.0f, 0.98f, 0.9f}, {0, 1, 0}, 0.01f);
+  // A thin body, one face of it through the centres of cells.
+  add_box_inside(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(7.0f)), {0.25f, -0.1833333f, 0.2f},
+                 {-0.1f, -0.0666667f, -0.1f});
   const Result r = inject(scene, unit_grid(12));
   const VoxelGrid voxels(r.voxels.grid, r.voxels.sides);
   std::vector<glm::vec4> flux(voxels.side_count(), glm::vec4(0.0f));

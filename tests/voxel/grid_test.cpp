@@ -72,18 +72,29 @@ TEST(Grid, WorldAndCellUnitsAreInverse) {
 
 // A surface blocks the segment between two cell centres that it lies between: centres are at 0.5, 1.5 ...
 TEST(Grid, FaceOfDepth) {
-  EXPECT_EQ(shared::face_of_depth(-0.2f), 0);
-  EXPECT_EQ(shared::face_of_depth(0.49f), 0);
-  EXPECT_EQ(shared::face_of_depth(0.51f), 1);
-  EXPECT_EQ(shared::face_of_depth(1.0f), 1);
-  EXPECT_EQ(shared::face_of_depth(31.7f), 32);
+  for (bool below : {false, true}) {
+    EXPECT_EQ(shared::face_of_depth(-0.2f, below), 0);
+    EXPECT_EQ(shared::face_of_depth(0.49f, below), 0);
+    EXPECT_EQ(shared::face_of_depth(0.51f, below), 1);
+    EXPECT_EQ(shared::face_of_depth(1.0f, below), 1);
+    EXPECT_EQ(shared::face_of_depth(31.7f, below), 32);
+  }
   // A wall through the centres of cells falls on one side of all of them, whatever the rounding.
-  for (int face : {1, 8, 64, 128}) {
+  for (int face : {1, 8, 64, 128, 1024}) {
     const float centre = float(face) - 0.5f;
-    for (float error : {-2e-5f, -1e-5f, 0.0f, 1e-5f, 2e-5f}) {
-      EXPECT_EQ(shared::face_of_depth(centre + error), face) << centre << " + " << error;
+    for (float error : {-1e-3f, -2e-5f, -1e-5f, 0.0f, 1e-5f, 2e-5f, 1e-3f}) {
+      EXPECT_EQ(shared::face_of_depth(centre + error, false), face) << centre << " + " << error;
+      EXPECT_EQ(shared::face_of_depth(centre + error, true), face - 1) << centre << " + " << error;
     }
   }
+}
+
+TEST(Grid, FallsBelowCentreAsAllCentresMove) {
+  EXPECT_TRUE(shared::falls_below_centre({0.0f, 1.0f, 0.0f}, 1));
+  EXPECT_TRUE(shared::falls_below_centre({0.0f, -1.0f, 0.0f}, 1));
+  EXPECT_TRUE(shared::falls_below_centre({0.6f, 0.0f, 0.8f}, 2));
+  EXPECT_FALSE(shared::falls_below_centre({-0.6f, 0.0f, 0.8f}, 2));
+  EXPECT_TRUE(shared::falls_below_centre({-0.6f, 0.0f, 0.8f}, 0));
 }
 
 Scene scene_of_size(glm::vec3 size, glm::vec3 centre = glm::vec3(0.0f)) {

@@ -51,7 +51,8 @@ SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int 
         const float depth =
             point[a] + (n[b] * (point[b] - float(cell[b]) - 0.5f) + n[c] * (point[c] - float(cell[c]) - 0.5f)) / n[a];
         if (std::abs(depth - point[a]) > 3.0f) continue;
-        cell[a] = shared::face_of_depth(depth) + (k % 3 == 2 ? -1 : k % 3) - (n[a] > 0.0f ? 0 : 1);
+        cell[a] = shared::face_of_depth(depth, shared::falls_below_centre(n, a)) + (k % 3 == 2 ? -1 : k % 3) -
+                  (n[a] > 0.0f ? 0 : 1);
         if (!shared::cell_inside(v.grid(), cell)) continue;
         const Side* side = side_of(v, cell, shared::face_of(a, !(n[a] > 0.0f)));
         if (side == nullptr || (front >= 0 && side->front != front)) continue;
@@ -113,8 +114,9 @@ TEST(ColumnsAround, KernelsAgree) {
     const glm::vec3 point = 30.0f + 30.0f * random.vec(), low = glm::floor(point);
     const glm::vec3 slope = (i % 3 == 0 ? 8.0f : 2.0f) * random.vec();
     const unsigned char* own = bytes.data() + 5 * kRow + 5 * kStride + 4;
-    const AroundQuery query{point.x, point.y, point.z, low.x, low.y,          low.z, slope.y,
-                            slope.z, 3.0f,    kStride, kRow,  {own, own + 3}, {1, 2}};
+    const int to_face = 191 + i % 2;
+    const AroundQuery query{point.x, point.y, point.z, low.x,   low.y, low.z,          slope.y,
+                            slope.z, 3.0f,    to_face, kStride, kRow,  {own, own + 3}, {1, 2}};
     AroundColumns a, b;
     const unsigned mask = columns_around_baseline(query, a);
     ASSERT_EQ(mask, columns_around()(query, b));
