@@ -88,6 +88,9 @@ class TextureTable {
  public:
   TextureTable(const Document& document, Materials& out);
   TextureUse use(const tinygltf::TextureInfo& info, const std::string& who);
+  const TextureImage& image_of(int texture) const;
+  /// A texture of another image with the sampler of `like`.
+  int add(TextureImage image, int like);
 
  private:
   int texture(int file_texture, const std::string& who);
@@ -98,6 +101,14 @@ class TextureTable {
 };
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);
+
+// --- transmission.cpp
+/// KHR_materials_transmission on a material that is otherwise read: light passes straight on, as through a hole, as
+/// much as the base colour's luminance lets pass. What is absorbed on the way counts as covered and black, so that dark
+/// glass darkens; the light that passes keeps its own hue. Of coverage a, transmission t and luminance Y of the base
+/// colour ρ, the surface stops a(1 − tY) and reflects (1 − t)/(1 − tY) ρ of that.
+void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
+                        TextureTable& textures, Material& material);
 
 // --- mesh.cpp
 /// A primitive in the frame of the nodes that show it. Without normals its corners are unshared.

@@ -98,22 +98,6 @@ void read_specular_glossiness(const Document& document, const tinygltf::Material
   material.specular_color_factor = textured ? glm::vec3(1.0f) : mirror / kOfDefault;
 }
 
-/// KHR_materials_transmission: the share of light that passes, not bent and not coloured, as through a hole; the
-/// surface covers the rest.
-void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
-                        Material& material) {
-  const auto extension = in.extensions.find("KHR_materials_transmission");
-  if (extension == in.extensions.end() || !extension->second.Has("transmissionFactor")) return;
-  const tinygltf::Value& factor = extension->second.Get("transmissionFactor");
-  if (!factor.IsNumber()) refuse(document.path, fmt::format("{}: its transmissionFactor is not a number", who));
-  const float passes = in_range(document, factor.GetNumberAsDouble(), 0.0, 1.0, who, "transmissionFactor");
-  if (passes == 0.0f || material.alpha_mode == AlphaMode::mask) return;
-  if (extension->second.Has("transmissionTexture")) warn(document.path, "transmission textures are ignored");
-  const float covers = material.alpha_mode == AlphaMode::opaque ? 1.0f : material.base_color_factor.a;
-  material.alpha_mode = AlphaMode::blend;
-  material.base_color_factor.a = covers * (1.0f - passes);
-}
-
 AlphaMode read_alpha_mode(const Document& document, const std::string& mode, const std::string& who) {
   if (mode == "OPAQUE" || mode.empty()) return AlphaMode::opaque;
   if (mode == "MASK") return AlphaMode::mask;
@@ -142,7 +126,7 @@ Material read_material(const Document& document, size_t index, TextureTable& tex
   material.emissive = textures.use(in.emissiveTexture, who + " emissiveTexture");
   material.alpha_mode = read_alpha_mode(document, in.alphaMode, who);
   material.alpha_cutoff = in_range(document, in.alphaCutoff, 0.0, 1e6, who, "alphaCutoff");
-  apply_transmission(document, in, who, material);
+  apply_transmission(document, in, who, textures, material);
   material.double_sided = in.doubleSided;
   tinygltf::TextureInfo normal;
   normal.index = in.normalTexture.index;

@@ -149,4 +149,14 @@ TextureUse TextureTable::use(const tinygltf::TextureInfo& info, const std::strin
   return use;
 }
 
+const TextureImage& TextureTable::image_of(int texture) const {
+  return out_.images[size_t(out_.textures[size_t(texture)].image)];
+}
+
+int TextureTable::add(TextureImage image, int like) {
+  out_.images.push_back(std::move(image));
+  out_.textures.push_back({int(out_.images.size()) - 1, out_.textures[size_t(like)].sampler});
+  return int(out_.textures.size()) - 1;
+}
+
 }  // namespace volgi::gltf

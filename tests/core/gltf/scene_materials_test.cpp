@@ -111,6 +111,49 @@ TEST_F(SceneMaterials, TransmissionIsAHole) {
   }
 }
 
+/// Dark glass darkens: what its colour absorbs is covered and black; what is not transmitted keeps its reflectance.
+TEST_F(SceneMaterials, ColouredGlassAbsorbs) {
+  Json m = {{"name", "glass"}};
+  m["pbrMetallicRoughness"] = {{"metallicFactor", 0.0}, {"baseColorFactor", {0.2, 0.2, 0.2, 1.0}}};
+  m["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.75;
+  m["extensions"]["KHR_materials_specular"]["specularFactor"] = 0;
+  writer.push("materials", m);
+  textured_triangle({0, 0, 0, 0, 0, 0});
+  const SurfacePoint grey = corner(load(), 0);
+  EXPECT_NEAR(grey.alpha, 1.0f - 0.75f * 0.2f, 1e-6f);
+  expect_near(grey.albedo * grey.alpha, glm::vec3(0.25f * 0.2f));
+
+  writer.root["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] = 1.0;  // a metal lets nothing pass
+  EXPECT_EQ(corner(load(), 0).alpha, 1.0f);
+}
+
+/// Stained glass: each texel of the base colour passes by its own luminance; the transmission texture's red channel
+/// says where it is glass; the base colour's alpha is of no meaning in an opaque material.
+TEST_F(SceneMaterials, TexturedGlass) {
+  Json& m = material({{"baseColorTexture", {{"index", texture(nearest)}}}});
+  m["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", 1.0}};
+  const std::vector<float> red_green_white = {0.25f, 0.25f, 0.75f, 0.25f, 0.75f, 0.75f};
+  textured_triangle(red_green_white);
+  const Scene colored = load();
+  EXPECT_NEAR(corner(colored, 0).alpha, 1.0f - 0.2126f, 0.003f);
+  EXPECT_NEAR(corner(colored, 1).alpha, 1.0f - 0.7152f, 0.003f);
+  EXPECT_NEAR(corner(colored, 2).alpha, 0.0f, 0.003f);
+  expect_near(corner(colored, 0).albedo, glm::vec3(0.0f));
+
+  Json& transmission = writer.root["materials"][0]["extensions"]["KHR_materials_transmission"];
+  transmission["transmissionTexture"]["index"] = 0;  // red at the red and the white texel, none at the green one
+  const Scene partly = load();
+  EXPECT_NEAR(corner(partly, 0).alpha, 1.0f - 0.2126f, 0.003f);
+  EXPECT_EQ(corner(partly, 1).alpha, 1.0f);
+  expect_near(corner(partly, 1).albedo, {0, 1, 0}, 0.003f);
+
+  writer.root["materials"][0]["pbrMetallicRoughness"].erase("baseColorTexture");
+  const Scene clear = load();
+  EXPECT_EQ(corner(clear, 0).alpha, 0.0f);
+  EXPECT_EQ(corner(clear, 1).alpha, 1.0f);
+  expect_near(corner(clear, 1).albedo, {1, 1, 1});
+}
+
 TEST_F(SceneMaterials, SpecularAndRefractiveIndex) {
   material().erase("extensions");
   textured_triangle({0, 0, 0, 0, 0, 0});
