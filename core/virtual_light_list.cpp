@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kFormat = "volgi virtual lights 1";
 constexpr size_t kMaxLights = size_t{1} << 22;  // 200 MB of them; a renderer's list has thousands
 constexpr double kUnitTolerance = 1e-4;         // of a normal's length: a float's rounding is 1e-7, a half's 5e-4
-constexpr std::array<const char*, 3> kKinds = {"reflected", "emitted", "negative"};  // VIRTUAL_LIGHT_*
+constexpr std::array<const char*, 4> kKinds = {"reflected", "emitted", "negative", "lattice"};  // VIRTUAL_LIGHT_*
 
 enum Field { kind, source, position, normal, flux, area, field_count };
 constexpr std::array<const char*, field_count> kFields = {"kind", "source", "position", "normal", "flux", "area_m2"};
@@ -32,7 +32,7 @@ bool finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && st
 
 /// What is wrong with a light, "" if nothing. A light without flux stands for nothing, so its normal may be anything.
 std::string complaint(const shared::VirtualLight& light) {
-  if (light.kind < 0 || light.kind >= static_cast<int>(kKinds.size())) return "kind is not one of the three";
+  if (light.kind < 0 || light.kind >= static_cast<int>(kKinds.size())) return "kind is not one of the four";
   if (light.source < -1) return "source must be the index of a light, or -1";
   if (!finite(light.position)) return "position must be finite";
   if (!finite(light.flux) || glm::any(glm::lessThan(light.flux, glm::vec3(0.0f))))

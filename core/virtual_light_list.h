@@ -15,7 +15,7 @@ struct VirtualLightList {
 };
 
 /// JSON: {"format": "volgi virtual lights 1", "world_origin": [x, y, z], "lights": [{"kind": "reflected" | "emitted" |
-/// "negative", "source", "position", "normal", "flux", "area_m2"}]}; floats read back exactly.
+/// "negative" | "lattice", "source", "position", "normal", "flux", "area_m2"}]}; floats read back exactly.
 /// @throws Error(cannot_write), as write_atomically does.
 void write_virtual_lights(const std::filesystem::path& file, const VirtualLightList& list);
 /// @throws Error(bad_input) naming the file, the light and the field.

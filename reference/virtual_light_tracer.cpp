@@ -32,6 +32,7 @@ struct GatheredLight {
   double area_m2;
   std::uint32_t index;  // in the list
   bool indirect;
+  bool in_the_air;  // of a lattice
 };
 
 double position_error(const Scene& scene) {
@@ -46,11 +47,13 @@ std::vector<GatheredLight> lights_of(const VirtualLightList& list, const Scene& 
   out.reserve(list.lights.size());
   for (size_t i = 0; i < list.lights.size(); ++i) {
     const shared::VirtualLight& light = list.lights[i];
-    const bool indirect = light.kind == VIRTUAL_LIGHT_REFLECTED;
+    const bool in_the_air = light.kind == VIRTUAL_LIGHT_LATTICE;
+    const bool indirect = light.kind == VIRTUAL_LIGHT_REFLECTED || in_the_air;
     if (light.kind == VIRTUAL_LIGHT_NEGATIVE || light.flux == glm::vec3(0.0f) || (indirect && !with_indirect)) continue;
     const glm::dvec3 position = glm::dvec3(light.position) + shift, normal(light.normal);
-    out.push_back({position, normal, glm::dvec3(light.flux), position + lift * normal, double(light.area_m2),
-                   static_cast<std::uint32_t>(i), indirect});
+    const glm::dvec3 aim = in_the_air ? position : position + lift * normal;
+    out.push_back({position, normal, glm::dvec3(light.flux), aim, double(light.area_m2), static_cast<std::uint32_t>(i),
+                   indirect, in_the_air});
   }
   return out;
 }
@@ -78,6 +81,10 @@ double irradiance_per_flux(const PathVertex& vertex, const GatheredLight& light)
   const double at_light = -glm::dot(light.normal, between);
   const double at_vertex = glm::dot(glm::dvec3(vertex.shading_normal), between);
   // Both normals of the vertex decide which side light is on; also nothing where the two points are one.
+  if (light.in_the_air) {  // an intensity I ahead and I / 2 back: 3 pi I of flux
+    if (!(at_vertex > 0.0) || !(glm::dot(glm::dvec3(vertex.geometric_normal), between) > 0.0)) return 0.0;
+    return (at_light > 0.0 ? 1.0 : 0.5) * at_vertex / std::sqrt(squared) / (3.0 * (kPi * squared + light.area_m2));
+  }
   if (!(at_light > 0.0) || !(at_vertex > 0.0) || !(glm::dot(glm::dvec3(vertex.geometric_normal), between) > 0.0))
     return 0.0;
   const double facing = -glm::dot(light.normal, glm::dvec3(vertex.shading_normal));

@@ -13,6 +13,7 @@ struct VirtualLightListGl {
   std::vector<int> of_light;  // reflected ones, of each punctual light in its order, then of the sky if there is one
   int reflected = 0;          // lights [0, reflected): the sum of of_light
   int emitted = 0;            // lights [reflected, reflected + emitted)
+  bool in_the_air = false;    // all of them are VIRTUAL_LIGHT_LATTICE, which send light to both sides
   int count() const { return reflected + emitted; }
 };
 

@@ -12,11 +12,15 @@
 #include "screen/gather/interleaved/interleaved_stage.h"
 #include "screen/gather/multires/multires_stage.h"
 #include "screen/gather/strided/strided_stage.h"
+#include "screen/lights/lattice/lattice_stage.h"
+#include "screen/lights/light_choice.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
 #include "screen/sources/sky/sky_stage.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
+#include "screen/visibility/imperfect/imperfect_stage.h"
 #include "screen/visibility/negative/negative_stage.h"
+#include "screen/visibility/visibility_choice.h"
 
 namespace volgi::screen {
 
@@ -27,8 +31,10 @@ constexpr const StageType* STAGE_TYPES[] = {
     &SKY,
     &RSM_LIGHTS,
     &RESAMPLED_LIGHTS,
+    &LATTICE_LIGHTS,
     &NEGATIVE_LIGHTS_STAGE,
     &AREA_MAPS,
+    &IMPERFECT_VISIBILITY,
     &STRIDED_GATHER,
     &INTERLEAVED_GATHER,
     &MULTIRES_GATHER,
@@ -42,6 +48,11 @@ constexpr LightPaths FIRST_ORDER{emission_direct, punctual_first, sky_direct, sk
 void prefer_clustered_visibility_as_printed(TypeMap& settings) {
   prefer_sky_by_lights(settings);
   prefer_interleaved_gather(settings);
+}
+
+void prefer_lattice_as_printed(TypeMap& settings) {
+  prefer_wave_lattice(settings);
+  prefer_imperfect_maps(settings);
 }
 
 std::vector<Recipe> make_recipes() {
@@ -65,9 +76,14 @@ std::vector<Recipe> make_recipes() {
        &prefer_sky_by_lights},
       {"vpl",
        "one bounce by virtual lights without shadows",
-       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &STRIDED_GATHER},
+       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &IMPERFECT_VISIBILITY, &STRIDED_GATHER},
        FIRST_ORDER,
        &prefer_sky_by_lights},
+      {"lattice",
+       "lights in the air around each light, in place of its reflections (wave lattice)",
+       {&LATTICE_LIGHTS, &IMPERFECT_VISIBILITY, &STRIDED_GATHER},
+       {punctual_first, punctual_higher},
+       &prefer_lattice_as_printed},
       {"none", "direct light of punctual lights and the sky alone", {&SKY}, {sky_direct}},
   };
 }

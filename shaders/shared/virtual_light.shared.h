@@ -7,6 +7,7 @@ SHARED_BEGIN
 #define VIRTUAL_LIGHT_REFLECTED 0  // flux of a punctual light after its first reflection: indirect light
 #define VIRTUAL_LIGHT_EMITTED 1    // flux of an emissive surface: its arrival is direct light
 #define VIRTUAL_LIGHT_NEGATIVE 2   // to be subtracted: flux that a surface should have stopped
+#define VIRTUAL_LIGHT_LATTICE 3    // in the air, in place of reflections: lattice_light.shared.h has what it sends
 
 // Lights in one uniform block: the least GL_MAX_UNIFORM_BLOCK_SIZE is 16 KiB, but every 4.5 driver in use has 64 KiB.
 #define VIRTUAL_LIGHTS_PER_BLOCK 1024

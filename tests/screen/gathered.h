@@ -80,7 +80,7 @@ inline Gathered gathered(Seen& seen, const VirtualLightListGl& lights, const Gat
                          const screen::NegativeLights* negative = nullptr,
                          VirtualLightGather::Part part = VirtualLightGather::Part::all) {
   VirtualLightGather gather(seen.size, options);
-  gather.run(seen.gbuffer, lights, negative, part, seen.diagonal_m, seen.timer);
+  gather.run(seen.gbuffer, lights, {.negative = negative}, part, seen.diagonal_m, seen.timer);
   return {texels(gather.direct()), texels(gather.indirect()), gather.coarse_share()};
 }
 

@@ -5,8 +5,8 @@
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/area_light_gather.h"
 #include "screen/gather/interleaved/near_lights.h"
+#include "screen/lights/light_choice.h"
 #include "screen/lights/resample/resample_stage.h"
-#include "screen/sources/sky/sky_stage.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -27,7 +27,7 @@ constexpr Parameter PARAMETERS[] = {
 
 StageRole role(const FrameOptions& options) {
   if (options.of<GatherChoice>().stage != GatherChoice::Stage::interleaved) return {.active = false};
-  const LightPaths paths = reflected_paths(options) | LightPaths{LightPath::emission_direct};
+  const LightPaths paths = paths_by_lights(options);
   AreaLightGather::check(options.of<Options>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}};
   if (lights_are_subdivided(options)) {

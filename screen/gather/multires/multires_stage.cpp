@@ -7,8 +7,8 @@
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/multires/light_cut.h"
 #include "screen/gather/multires/light_tree.h"
+#include "screen/lights/light_choice.h"
 #include "screen/lights/resample/resample_stage.h"
-#include "screen/sources/sky/sky_stage.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 
 namespace volgi::screen {
@@ -42,7 +42,7 @@ StageRole role(const FrameOptions& options) {
   SmoothPixels::check(options.of<SmoothPixelOptions>());
   StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()},
               .makes = {product<SmoothGather>(), product<LightTree>()},
-              .adds = {{reflected_paths(options) | LightPaths{LightPath::emission_direct}}}};
+              .adds = {{paths_by_lights(options)}}};
   if (lights_are_subdivided(options)) r.needs.push_back(product<VirtualLightSubdivision>());
   return r;
 }

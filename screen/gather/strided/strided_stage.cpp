@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "screen/gather/strided/virtual_light_gather.h"
-#include "screen/sources/sky/sky_stage.h"
+#include "screen/lights/light_choice.h"
 
 namespace volgi::screen {
 
@@ -28,8 +28,8 @@ constexpr Parameter PARAMETERS[] = {
 
 StageRole role(const FrameOptions& options) {
   return {.needs = {product<VirtualLightListGl>()},
-          .uses = {product<NegativeLights>()},
-          .adds = {{reflected_paths(options) | LightPaths{LightPath::emission_direct}}}};
+          .uses = {product<NegativeLights>(), product<LightMaps>()},
+          .adds = {{paths_by_lights(options)}}};
 }
 
 class StridedStage : public Stage {
@@ -40,7 +40,7 @@ class StridedStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& lights = frame.get<VirtualLightListGl>();
     const bool reflected = frame.wanted.meets(reflected_);
-    gather_.run(frame.gbuffer, lights, frame.find<NegativeLights>(),
+    gather_.run(frame.gbuffer, lights, {frame.find<NegativeLights>(), frame.find<LightMaps>()},
                 reflected ? VirtualLightGather::Part::all : VirtualLightGather::Part::emitted, frame.scene_diagonal_m,
                 timer);
     if (lights.emitted > 0) frame.layers.push_back({&gather_.direct(), {LightPath::emission_direct}});

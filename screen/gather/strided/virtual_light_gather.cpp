@@ -1,7 +1,6 @@
 #include "screen/gather/strided/virtual_light_gather.h"
 
 #include <algorithm>
-#include <array>
 
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/gather/strided/slots.shared.h"
@@ -32,15 +31,15 @@ VirtualLightGather::VirtualLightGather(glm::ivec2 size, const GatherOptions& opt
   discontinuity_ = gl::Program::compute("screen/gather/strided/discontinuity.comp.glsl");
 }
 
-void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative,
+void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const Visibility& visibility,
                              Part part, float scene_diagonal_m, gl::PassTimer& timer) {
   const int reflected = part == Part::all ? lights.reflected : 0;
   const bool with_direct = lights.emitted > 0;
   const auto gather_all = [&](Points points, const gl::Texture& indirect, const gl::Texture& direct) {
     const auto scope = timer.scope(name);
     bind_pixels(gbuffer);
-    gather(points, lights, 0, reflected, negative, indirect);
-    if (with_direct) gather(points, lights, lights.reflected, lights.count(), nullptr, direct);
+    gather(points, lights, 0, reflected, visibility, indirect);
+    if (with_direct) gather(points, lights, lights.reflected, lights.count(), {nullptr, visibility.maps}, direct);
   };
   if (options_.stride == 1) {
     gather_all(Points::grid, indirect_, direct_);
@@ -55,31 +54,37 @@ void VirtualLightGather::run(const GBuffer& gbuffer, const VirtualLightListGl& l
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-/// Without negative lights, a program that does not declare their block, as none is bound.
-const gl::Program& VirtualLightGather::gather_program(Points points, bool negative) {
-  auto& program = gather_[points == Points::list][negative];
-  if (program) return *program;
+/// Without negative lights or maps, a program that does not declare them, as none are bound.
+const gl::Program& VirtualLightGather::gather_program(Points points, bool in_the_air, const Visibility& visibility) {
   std::vector<std::string> defines;
   if (points == Points::list) defines.emplace_back("LISTED");
-  if (negative) defines.emplace_back("NEGATIVE");
-  return program.emplace(gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl", defines));
+  if (in_the_air) defines.emplace_back("IN_THE_AIR");
+  if (visibility.negative != nullptr) defines.emplace_back("NEGATIVE");
+  if (visibility.maps != nullptr) defines.emplace_back("LIGHT_MAPS");
+  const auto found = gather_.find(defines);
+  if (found != gather_.end()) return found->second;
+  return gather_.emplace(defines, gl::Program::compute("screen/gather/strided/virtual_light_gather.comp.glsl", defines))
+      .first->second;
 }
 
 void VirtualLightGather::gather(Points points, const VirtualLightListGl& lights, int first, int end,
-                                const NegativeLights* negative, const gl::Texture& target) {
+                                const Visibility& visibility, const gl::Texture& target) {
   const bool listed = points == Points::list;
-  const gl::Program& program = gather_program(points, negative != nullptr);
+  const NegativeLights* const negative = visibility.negative;
+  const gl::Program& program = gather_program(points, lights.in_the_air, visibility);
   program.use();
   program.set("stride", listed ? 1 : options_.stride);
   target.bind_image(GATHERED_IMAGE, GL_READ_WRITE);
   if (listed) list_.bind(PIXEL_LIST_SLOT);
   if (negative != nullptr) negative->buffer().bind_uniform(NEGATIVE_LIGHTS_BLOCK);
+  if (visibility.maps != nullptr) visibility.maps->bind(program);
   // At least one dispatch, which leaves black where there are no lights.
   const int first_block = first / VIRTUAL_LIGHTS_PER_BLOCK;
   const int last_block = std::max((end - 1) / VIRTUAL_LIGHTS_PER_BLOCK, first_block);
   for (int block = first_block; block <= last_block; ++block) {
     const int start = block * VIRTUAL_LIGHTS_PER_BLOCK;
     glBindBufferRange(GL_UNIFORM_BUFFER, VIRTUAL_LIGHTS_BLOCK, lights.buffer.id(), block * kBlockBytes, kBlockBytes);
+    program.set("first_of_block", start);
     program.set("first_light", std::max(first - start, 0));
     program.set("end_light", std::min(end - start, VIRTUAL_LIGHTS_PER_BLOCK));
     program.set("begins", block == first_block ? 1 : 0);

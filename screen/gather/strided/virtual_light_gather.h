@@ -1,6 +1,7 @@
 #pragma once
-#include <array>
-#include <optional>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
@@ -9,6 +10,7 @@
 #include "screen/base/named_texture.h"
 #include "screen/base/virtual_light_list_gl.h"
 #include "screen/base/work_list.h"
+#include "screen/visibility/imperfect/light_maps.h"
 #include "screen/visibility/negative/negative_lights.h"
 
 namespace volgi::screen {
@@ -32,10 +34,14 @@ class VirtualLightGather {
   VirtualLightGather(glm::ivec2 size, const GatherOptions& options);
 
   enum class Part { emitted, all };
-  /// @param negative  taken from the reflected lights' irradiance; may be null.
+  /// What is between lights and pixels; null: nothing.
+  struct Visibility {
+    const NegativeLights* negative = nullptr;  // taken from the reflected lights' irradiance
+    const LightMaps* maps = nullptr;           // each light reaches as far as its own sees
+  };
   /// @param part  emitted: direct() only.
   /// @param scene_diagonal_m  what options.distance is part of.
-  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const NegativeLights* negative, Part part,
+  void run(const GBuffer& gbuffer, const VirtualLightListGl& lights, const Visibility& visibility, Part part,
            float scene_diagonal_m, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
@@ -52,8 +58,8 @@ class VirtualLightGather {
 
  private:
   enum class Points { grid, list };
-  const gl::Program& gather_program(Points points, bool negative);
-  void gather(Points points, const VirtualLightListGl& lights, int first, int end, const NegativeLights* negative,
+  const gl::Program& gather_program(Points points, bool in_the_air, const Visibility& visibility);
+  void gather(Points points, const VirtualLightListGl& lights, int first, int end, const Visibility& visibility,
               const gl::Texture& target);
   void find_discontinuities(const GBuffer& gbuffer, bool with_direct, float scene_diagonal_m);
 
@@ -61,7 +67,7 @@ class VirtualLightGather {
   glm::ivec2 size_;
   gl::Texture direct_, indirect_, coarse_direct_, coarse_indirect_;
   WorkList list_;  // WorkListHead of shaders/screen/base/work_list.glsl, then pixels
-  std::array<std::array<std::optional<gl::Program>, 2>, 2> gather_;  // [listed][negative], made when first wanted
+  std::map<std::vector<std::string>, gl::Program> gather_;  // by defines, made when first wanted
   gl::Program discontinuity_;
 };
 

@@ -76,11 +76,6 @@ bool sky_goes_by_lights(const FrameOptions& options) {
   return options.of<Options>().first.value_or(Options::First::volume) == Options::First::lights;
 }
 
-LightPaths reflected_paths(const FrameOptions& options) {
-  const LightPaths punctual{LightPath::punctual_first};
-  return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
-}
-
 void prefer_sky_by_lights(TypeMap& settings) {
   auto& first = settings.of<Options>().first;
   if (!first) first = Options::First::lights;

@@ -9,8 +9,6 @@ extern const StageType SKY;
 
 /// Whether the first reflection of sky light is carried by virtual lights; else by a volume (SkyOptions::first).
 bool sky_goes_by_lights(const FrameOptions& options);
-/// What virtual lights carry after one reflection with these options.
-LightPaths reflected_paths(const FrameOptions& options);
 /// A recipe without a volume behind a first bounce.
 void prefer_sky_by_lights(TypeMap& settings);
 

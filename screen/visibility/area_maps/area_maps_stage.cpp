@@ -1,6 +1,12 @@
 #include "screen/visibility/area_maps/area_maps_stage.h"
 
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
 #include "screen/visibility/area_maps/light_clusters.h"
+#include "screen/visibility/imperfect/imperfect_maps.h"
+#include "screen/visibility/visibility_choice.h"
 
 namespace volgi::screen {
 
@@ -35,15 +41,19 @@ constexpr Parameter PARAMETERS[] = {
         [](AreaMapOptions& o) -> auto& { return o.texels; }),
 };
 
-StageRole role(const FrameOptions& /*options*/) {
+StageRole role(const FrameOptions& options) {
+  if (options.of<VisibilityChoice>().maps == VisibilityChoice::Maps::none)
+    throw Error(ExitCode::usage, "visibility=none: clusters need maps, imperfect or regular; --gi vpl needs none");
   return {.needs = {product<VirtualLightListGl>()}, .makes = {product<LightClusters>()}};
 }
 
 class AreaMapsStage : public Stage {
  public:
   explicit AreaMapsStage(const StageContext& context)
-      : area_lights_(context.options.of<VirtualAreaLightOptions>()),
-        maps_(context.options.of<AreaMapOptions>().texels, area_lights_.count()),
+      : scene_(context.scene),
+        area_lights_(context.options.of<VirtualAreaLightOptions>()),
+        imperfect_(imperfect_maps(context)),
+        maps_(imperfect_ ? imperfect_->texels() : context.options.of<AreaMapOptions>().texels, area_lights_.count()),
         shadow_(AreaLightShadow::make(context.options.of<AreaMapOptions>().shadow,
                                       context.options.of<AreaMapOptions>().filter, maps_.resolution(),
                                       area_lights_.count())) {}
@@ -51,13 +61,21 @@ class AreaMapsStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& lights = frame.get<VirtualLightListGl>();
     area_lights_.run(lights.buffer, lights.count(), frame.scene_diagonal_m, timer, frame.sample);
-    maps_.run(frame.triangles, area_lights_, timer);
+    if (imperfect_) {
+      imperfect_->run(area_lights_.buffer(), area_lights_.count(), maps_.distance(), 1, frame.scene_diagonal_m, timer);
+    } else {
+      maps_.run(frame.triangles, area_lights_, timer);
+    }
     shadow_->run(maps_, timer);
     frame.lend(clusters_);
   }
+  void scene_changed() override {
+    if (imperfect_) imperfect_->follow(scene_);
+  }
   void report(FrameReport& report) const override {
     report.add("vals", double(area_lights_.count()), std::to_string(area_lights_.count()) + " clusters");
-    report.memory_bytes += area_lights_.bytes() + maps_.bytes() + shadow_->bytes();
+    report.memory_bytes +=
+        area_lights_.bytes() + maps_.bytes() + shadow_->bytes() + (imperfect_ ? imperfect_->bytes() : 0);
   }
   void list_textures(std::vector<NamedTexture>& list) const override {
     maps_.list_textures(list);
@@ -65,7 +83,14 @@ class AreaMapsStage : public Stage {
   }
 
  private:
+  static std::optional<ImperfectMaps> imperfect_maps(const StageContext& context) {
+    if (context.options.of<VisibilityChoice>().maps != VisibilityChoice::Maps::imperfect) return std::nullopt;
+    return std::optional<ImperfectMaps>(std::in_place, context.scene, context.options.of<ImperfectMapOptions>());
+  }
+
+  const Scene& scene_;
   VirtualAreaLights area_lights_;
+  std::optional<ImperfectMaps> imperfect_;  // in place of those of triangles
   ParaboloidDepthMaps maps_;
   std::unique_ptr<AreaLightShadow> shadow_;
   LightClusters clusters_{area_lights_, maps_, *shadow_};

@@ -2,9 +2,10 @@
 // Irradiance of virtual lights, without visibility, at pixels of the G-buffer: the disk-to-point
 // form (docs/conventions.md#virtual-lights), less what negative lights take away. A dispatch takes one block of lights;
 // the first begins the sum, the last ends it.
-// NEGATIVE: there are negative lights. LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
+// IN_THE_AIR: lights of a lattice. LIGHT_MAPS: each as far as its own map sees. NEGATIVE: there are negative lights. LISTED: the pixels in a list; else every stride-th in both directions, and the last row and column.
 #include "shared/constants.glsl"
 #include "shared/disk_to_point.shared.h"
+#include "shared/lattice_light.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "screen/base/virtual_lights_block.glsl"
 #include "screen/gather/strided/slots.shared.h"
@@ -24,15 +25,33 @@ uniform int ends;
 layout(std430, binding = PIXEL_LIST_SLOT) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 #endif
 
+#ifdef LIGHT_MAPS
+#include "screen/visibility/imperfect/light_map_visibility.glsl"
+uniform int first_of_block;  // among all lights
+#endif
+
+// Irradiance over the light's flux.
+float form_of(VirtualLight light, vec3 x, vec3 normal) {
+  vec3 w = light.position - x;
+  float squared = dot(w, w);
+  float along = dot(w, normal);
+#ifdef IN_THE_AIR
+  return lattice_light(-dot(w, light.normal), along, squared, light.area_m2);
+#else
+  float height = max(-dot(w, light.normal), 0.0);
+  return disk_to_point(height, along, -dot(normal, light.normal), squared, light.area_m2);
+#endif
+}
+
 vec3 sum_of_lights(vec3 x, vec3 normal, vec3 geometric) {
   vec3 sum = vec3(0.0);
   for (int i = first_light; i < end_light; ++i) {
     vec3 w = lights[i].position - x;
-    float squared = dot(w, w);
-    float along = dot(w, normal);
-    float height = max(-dot(w, lights[i].normal), 0.0);
-    float form = disk_to_point(height, along, -dot(normal, lights[i].normal), squared, lights[i].area_m2);
-    sum += lights[i].flux * (min(along, dot(w, geometric)) > 0.0 ? form : 0.0);
+    float form = min(dot(w, normal), dot(w, geometric)) > 0.0 ? form_of(lights[i], x, normal) : 0.0;
+#ifdef LIGHT_MAPS
+    if (form > 0.0) form *= light_map_visibility(first_of_block + i, lights[i].position, lights[i].normal, x, geometric);
+#endif
+    sum += lights[i].flux * form;
   }
   return sum;
 }

@@ -1,6 +1,6 @@
-// Hard shadow of the area light's middle: comparisons in the four nearest texels, interpolated.
-float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
-  int resolution = textureSize(shadow_distance, 0).x;
+// Hard shadow: comparisons in the four nearest texels, interpolated. The map has `resolution` texels on a side, from
+// `corner` of the receiver's layer on.
+float map_visibility(ShadowReceiver receiver, int resolution, ivec2 corner) {
   float receiver_m = length(receiver.position);
   vec2 disk = paraboloid_from_direction(receiver.position / receiver_m);
   float edge_m = texel_angle(disk, resolution) * receiver_m;
@@ -8,7 +8,9 @@ float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
   vec2 first = clamp(floor(at), vec2(0.0), vec2(float(resolution - 2)));
   vec2 t = clamp(at - first, vec2(0.0), vec2(1.0));
   // Looked up in the middle of the four, where rounding cannot choose others; they come anticlockwise from (0, 1).
-  vec4 distances_m = textureGather(shadow_distance, vec3((first + 1.0) / float(resolution), float(receiver.layer)));
+  vec4 distances_m = textureGather(
+      shadow_distance,
+      vec3((vec2(corner) + first + 1.0) / vec2(textureSize(shadow_distance, 0).xy), float(receiver.layer)));
   const vec2 CORNERS[4] = vec2[](vec2(0.0, 1.0), vec2(1.0, 1.0), vec2(1.0, 0.0), vec2(0.0, 0.0));
   float visible = 0.0;
   for (int k = 0; k < 4; ++k) {
@@ -18,4 +20,8 @@ float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
     visible += hides ? 0.0 : w.x * w.y;
   }
   return visible;
+}
+
+float receiver_visibility(VirtualAreaLight light, ShadowReceiver receiver) {
+  return map_visibility(receiver, textureSize(shadow_distance, 0).x, ivec2(0));
 }
