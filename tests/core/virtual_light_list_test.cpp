@@ -58,7 +58,7 @@ TEST(VirtualLightList, ReadsBackEveryBit) {
     light.flux = glm::abs(any_vector());
     light.area_m2 = std::abs(any_float());
     light.normal = glm::normalize(glm::vec3(std::normal_distribution<float>()(random), 0.3f, -0.7f));
-    light.kind = i % 3;
+    light.kind = i % 4;
     light.source = light.kind == VIRTUAL_LIGHT_EMITTED ? -1 : i;
     list.lights.push_back(light);
   }

@@ -73,6 +73,33 @@ TEST(VirtualLights, OneOverAPlaneIsTheFormula) {
   }
 }
 
+// A light in the air sends an intensity I ahead and half of it back; with flux 3 pi I.
+TEST(VirtualLights, LightsOfALatticeSendHalfBack) {
+  const glm::vec3 albedo(0.8f, 0.5f, 0.2f), flux(3.0f, 2.0f, 1.0f), position(0.3f, 0.7f, -0.2f);
+  const double area_m2 = 0.3;
+  const Scene scene = floor_scene(albedo);
+  for (const glm::vec3 normal : {glm::vec3(0, -1, 0), glm::vec3(0, 1, 0), glm::vec3(1, 0, 0)}) {
+    const VirtualLightList list{glm::dvec3(0), {light_at(position, normal, flux, VIRTUAL_LIGHT_LATTICE, 0.3f)}};
+    const ReferencePicture p = gather_virtual_lights(scene, kAbove, list, small());
+    int ahead = 0, back = 0;
+    for (size_t i = 0; i < p.color.pixels.size(); ++i) {
+      const glm::dvec3 d = glm::dvec3(position) - glm::dvec3(p.position.pixels[i]);
+      const bool in_front = glm::dot(glm::dvec3(normal), d) < 0.0;
+      ++(in_front ? ahead : back);
+      const double squared = glm::dot(d, d);
+      const double form =
+          (in_front ? 1.0 : 0.5) * d.y / std::sqrt(squared) / (3.0 * std::numbers::pi * squared + 3.0 * area_m2);
+      for (int c = 0; c < 3; ++c) {
+        const double expected = double(albedo[c]) / std::numbers::pi * double(flux[c]) * form;
+        EXPECT_NEAR(p.color.pixels[i][c], expected, 3e-5 * expected + 1e-12) << i;
+      }
+      EXPECT_EQ(p.direct.pixels[i], glm::vec3(0.0f));
+    }
+    EXPECT_EQ(ahead > 0, normal.y <= 0.0f);
+    EXPECT_EQ(back > 0, normal.y >= 0.0f);
+  }
+}
+
 TEST(VirtualLights, KindsGoToTheirLayers) {
   Scene scene = floor_scene(glm::vec3(0.5f));
   add_quad(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(2.0f)), {1, 0.01f, 1}, {0, 0, 0.2f}, {0.2f, 0, 0});

@@ -1,7 +1,8 @@
-// Which light a map belongs to, and how it looks from there.
+// How a light sees the scene.
 #ifndef VOLGI_MAP_VIEWS_GLSL
 #define VOLGI_MAP_VIEWS_GLSL
 #include "screen/visibility/area_maps/virtual_area_light.shared.h"
+#include "screen/visibility/imperfect/light_map.shared.h"
 
 // A unit vector across a unit normal, the same for all who ask.
 vec3 right_of(vec3 normal) {
@@ -20,16 +21,6 @@ VirtualAreaLight map_view(vec3 position, vec3 normal) {
   view.flux = vec3(0.0);
   view.first_light = 0;
   return view;
-}
-
-// Of `lights`, `mapped` have maps, evenly spread in the list.
-int map_of_light(int light, int lights, int mapped) {
-  int before = int((uint(light) * uint(mapped)) / uint(lights));
-  int after = int((uint(light + 1) * uint(mapped)) / uint(lights));
-  return after > before ? before : -1;
-}
-int light_of_map(int map, int lights, int mapped) {
-  return int((uint(map + 1) * uint(lights) + uint(mapped) - 1u) / uint(mapped)) - 1;
 }
 
 #endif
