@@ -12,6 +12,7 @@
 #include "apps/bench/conservative.h"
 #include "apps/bench/dong2009.h"
 #include "apps/bench/gpu.h"
+#include "apps/bench/lattice.h"
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
@@ -66,6 +67,7 @@ struct BenchCommand {
   void run_cochran2007(nlohmann::json& results) const;
   void run_dong2009(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
+  void run_lattice(nlohmann::json& results) const;
   void run_gpu(nlohmann::json& results) const;
   std::string gpu_command() const;
   std::vector<std::string> scenes_or(const std::vector<std::string>& usual) const {
@@ -197,6 +199,18 @@ void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
   }
 }
 
+void BenchCommand::run_lattice(nlohmann::json& results) const {
+  const gl::Context context(device.context);
+  LatticeBenchOptions options;
+  options.scenes = scenes;
+  if (!scenes.empty()) options.swept = options.mapped = scenes.front();
+  options.size = size.value_or(options.size);
+  options.frames = frames;
+  options.references = data / "references";
+  results["lattice"] = bench_lattice([this](const std::string& name) { return scene(name); }, context, options,
+                                     [this](const std::string& table) { show(table); });
+}
+
 std::string BenchCommand::gpu_command() const {
   std::string text = fmt::format("volgi bench gpu --frames {} --budget {:g}", quick ? 1 : frames, budget_s);
   if (quick) text += " --quick";
@@ -234,13 +248,11 @@ struct Benchmark {
   const char* name;
   void (BenchCommand::*run)(nlohmann::json&) const;
 };
-constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
-                                     {"propagation", &BenchCommand::run_propagation},
-                                     {"voxelize", &BenchCommand::run_voxelize},
-                                     {"cochran2007", &BenchCommand::run_cochran2007},
-                                     {"dong2009", &BenchCommand::run_dong2009},
-                                     {"against-path-tracing", &BenchCommand::run_against_path_tracing},
-                                     {"gpu", &BenchCommand::run_gpu}};
+constexpr Benchmark kBenchmarks[] = {
+    {"frame", &BenchCommand::run_frames},      {"propagation", &BenchCommand::run_propagation},
+    {"voxelize", &BenchCommand::run_voxelize}, {"cochran2007", &BenchCommand::run_cochran2007},
+    {"dong2009", &BenchCommand::run_dong2009}, {"against-path-tracing", &BenchCommand::run_against_path_tracing},
+    {"lattice", &BenchCommand::run_lattice},   {"gpu", &BenchCommand::run_gpu}};
 
 std::string benchmark_names() {
   std::vector<const char*> names;
@@ -273,7 +285,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "bench",
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
       "time the CPU's volume against copying memory and OpenVDB; 'cochran2007' and 'dong2009' repeat those papers' "
-      "tables and curve; 'against-path-tracing' tells how long path tracing takes to the error of --gi hybrid; "
+      "tables and curve; 'lattice' measures the wave lattice and imperfect maps; 'against-path-tracing' tells how long "
+      "path tracing takes to the error of --gi hybrid; "
       "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
   command->add_option("--data", options->data, "folder of cornell.glb")->capture_default_str();
@@ -281,11 +294,11 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--frames", options->frames, "frames measured, after two warm-up frames")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--size", options->size, "pixels on each side [512; dong2009: 800, its curve 192]")
+  command->add_option("--size", options->size, "pixels on each side [512; dong2009: 800, its curve and lattice 192]")
       ->check(CLI::Range(16, 8192));
   command
       ->add_option("--scene", options->scenes,
-                   "scenes by name, of frame, dong2009 and against-path-tracing [their own]")
+                   "scenes by name, of frame, dong2009, lattice and against-path-tracing [their own]")
       ->type_name("NAME");
   command->add_option("--curve-vpls", options->curve_lights, "dong2009: numbers of virtual lights of its curve")
       ->check(CLI::Range(2, 65536))
