@@ -41,6 +41,8 @@ struct SceneFile::Data {
   std::filesystem::path path;
   gltf::Materials materials;
   std::vector<std::vector<gltf::Primitive>> meshes;  // decoded where a node of the scene shows them
+  std::vector<std::vector<double>> morph_weights;    // of meshes, where a node has none of its own
+  std::vector<gltf::Skin> skins;
   std::vector<gltf::Node> nodes;
   std::vector<int> order;
   std::vector<gltf::Channel> channels;
@@ -50,8 +52,10 @@ struct SceneFile::Data {
   explicit Data(const gltf::Document& document);
   Scene still() const;
   void place(Scene& scene, double time_s, const WorldBox* given_box) const;
-  std::vector<glm::dmat4> world_from_nodes_at(double time_s) const;
-  std::vector<gltf::PlacedMesh> place_meshes(const std::vector<glm::dmat4>& world, size_t& dropped) const;
+  std::vector<gltf::Node> nodes_at(double time_s) const;
+  std::vector<gltf::PlacedMesh> place_meshes(const std::vector<gltf::Node>& moved, size_t& dropped) const;
+  void place_node(const std::vector<gltf::Node>& moved, const std::vector<glm::dmat4>& world, size_t index,
+                  std::vector<gltf::PlacedMesh>& placed, size_t& dropped) const;
   void check_positions(const gltf::PlacedMesh& placed, const gltf::Node& node) const;
   void add_lights_and_cameras(const std::vector<glm::dmat4>& world, Scene& scene) const;
 };
@@ -64,6 +68,8 @@ SceneFile::Data::Data(const gltf::Document& document) : path(document.path) {
   lights = gltf::read_lights(document);
   cameras = gltf::read_cameras(document);
   channels = gltf::read_channels(document, nodes);
+  skins = gltf::read_skins(document);
+  for (const tinygltf::Mesh& mesh : document.model.meshes) morph_weights.push_back(mesh.weights);
 
   meshes.resize(document.model.meshes.size());
   std::vector<bool> decoded(meshes.size(), false);
@@ -73,10 +79,12 @@ SceneFile::Data::Data(const gltf::Document& document) : path(document.path) {
     if (mesh < 0) continue;
     auto& primitives = meshes[size_t(mesh)];
     if (!decoded[size_t(mesh)]) {
-      primitives = gltf::read_mesh(document, size_t(mesh), int(materials.materials.size()) - 1);
+      primitives = gltf::read_mesh(document, size_t(mesh), materials);
       decoded[size_t(mesh)] = true;
     }
-    for (const gltf::Primitive& p : primitives) vertices += p.positions.size() + p.triangles.size();
+    gltf::check_joints(document, nodes[size_t(index)], skins, primitives);
+    const size_t times = std::max(nodes[size_t(index)].instances.size(), size_t(1));
+    for (const gltf::Primitive& p : primitives) vertices += times * (p.positions.size() + p.triangles.size());
     if (vertices > max_vertices) {
       throw Error(ExitCode::over_limit, fmt::format("{}: more than {} vertices and triangles in all nodes together",
                                                     path.string(), max_vertices));
@@ -92,18 +100,46 @@ void SceneFile::Data::check_positions(const gltf::PlacedMesh& placed, const gltf
   }
 }
 
-std::vector<gltf::PlacedMesh> SceneFile::Data::place_meshes(const std::vector<glm::dmat4>& world,
+/// What a node shows: morphed, then by its skin, or in the node's frame, once or in each of its instances.
+void SceneFile::Data::place_node(const std::vector<gltf::Node>& moved, const std::vector<glm::dmat4>& world,
+                                 size_t index, std::vector<gltf::PlacedMesh>& placed, size_t& dropped) const {
+  const gltf::Node& node = moved[index];
+  const std::vector<double>& weights =
+      node.morph_weights.empty() ? morph_weights[size_t(node.mesh)] : node.morph_weights;
+  std::vector<glm::dmat4> world_from_bind;
+  if (node.skin >= 0) {
+    const gltf::Skin& skin = skins[size_t(node.skin)];
+    for (size_t j = 0; j < skin.joints.size(); ++j)
+      world_from_bind.push_back(world[size_t(skin.joints[j])] * skin.joint_from_bind[j]);
+  }
+  const auto add = [&](gltf::PlacedMesh mesh) {
+    check_positions(mesh, node);
+    mesh.mesh.name = node.name;
+    mesh.mesh.object_id = std::uint32_t(index) + 1;
+    placed.push_back(std::move(mesh));
+  };
+  for (const gltf::Primitive& still : meshes[size_t(node.mesh)]) {
+    const bool morphs =
+        !still.targets.empty() && std::any_of(weights.begin(), weights.end(), [](double w) { return w != 0.0; });
+    const gltf::Primitive moving = morphs ? gltf::morphed(still, weights) : gltf::Primitive();
+    const gltf::Primitive& primitive = morphs ? moving : still;
+    if (node.skin >= 0 && !primitive.influences.empty()) {
+      add(gltf::place_skinned(primitive, world_from_bind, dropped));
+    } else if (node.instances.empty()) {
+      add(gltf::place_primitive(primitive, world[index], dropped));
+    } else {
+      for (const glm::dmat4& instance : node.instances)
+        add(gltf::place_primitive(primitive, world[index] * instance, dropped));
+    }
+  }
+}
+
+std::vector<gltf::PlacedMesh> SceneFile::Data::place_meshes(const std::vector<gltf::Node>& moved,
                                                             size_t& dropped) const {
+  const std::vector<glm::dmat4> world = gltf::world_from_nodes(path, moved, order);
   std::vector<gltf::PlacedMesh> placed;
   for (const int index : order) {
-    const gltf::Node& node = nodes[size_t(index)];
-    if (node.mesh < 0) continue;
-    for (const gltf::Primitive& primitive : meshes[size_t(node.mesh)]) {
-      gltf::PlacedMesh& mesh = placed.emplace_back(gltf::place_primitive(primitive, world[size_t(index)], dropped));
-      check_positions(mesh, node);
-      mesh.mesh.name = node.name;
-      mesh.mesh.object_id = std::uint32_t(index) + 1;
-    }
+    if (moved[size_t(index)].mesh >= 0) place_node(moved, world, size_t(index), placed, dropped);
   }
   return placed;
 }
@@ -126,9 +162,9 @@ void SceneFile::Data::add_lights_and_cameras(const std::vector<glm::dmat4>& worl
   }
 }
 
-SceneFile::SceneFile(const std::filesystem::path& path) {
+SceneFile::SceneFile(const std::filesystem::path& path, const SceneReading& reading) {
   try {
-    data_ = std::make_unique<Data>(gltf::read_document(path));
+    data_ = std::make_unique<Data>(gltf::read_document(path, reading));
   } catch (const std::bad_alloc&) {
     throw Error(ExitCode::over_limit, fmt::format("{}: not enough memory to read it", path.string()));
   }
@@ -159,18 +195,18 @@ Scene SceneFile::Data::still() const {
   return scene;
 }
 
-std::vector<glm::dmat4> SceneFile::Data::world_from_nodes_at(double time_s) const {
+std::vector<gltf::Node> SceneFile::Data::nodes_at(double time_s) const {
   assert(std::isfinite(time_s));
   std::vector<gltf::Node> moved = nodes;
   gltf::animate(moved, channels, time_s);
-  return gltf::world_from_nodes(path, moved, order);
+  return moved;
 }
 
 /// Puts what moves into the scene: all but what still() makes.
 void SceneFile::Data::place(Scene& scene, double time_s, const WorldBox* given_box) const {
-  const std::vector<glm::dmat4> world = world_from_nodes_at(time_s);
+  const std::vector<gltf::Node> moved = nodes_at(time_s);
   size_t dropped = 0;
-  std::vector<gltf::PlacedMesh> placed = place_meshes(world, dropped);
+  std::vector<gltf::PlacedMesh> placed = place_meshes(moved, dropped);
   const WorldBox box = given_box != nullptr ? *given_box : triangle_bounds(placed);
   scene.world_origin = box.empty() ? glm::dvec3(0.0) : box.centre();
   scene.meshes.clear();
@@ -188,7 +224,7 @@ void SceneFile::Data::place(Scene& scene, double time_s, const WorldBox* given_b
   }
   scene.lights.clear();
   scene.cameras.clear();
-  add_lights_and_cameras(world, scene);
+  add_lights_and_cameras(gltf::world_from_nodes(path, moved, order), scene);
 }
 
 Scene SceneFile::at(double time_s) const {
@@ -207,7 +243,7 @@ void SceneFile::move(Scene& scene, double time_s, const WorldBox& box) const { d
 
 WorldBox SceneFile::bounds(double time_s) const {
   size_t dropped = 0;
-  return triangle_bounds(data_->place_meshes(data_->world_from_nodes_at(time_s), dropped));
+  return triangle_bounds(data_->place_meshes(data_->nodes_at(time_s), dropped));
 }
 
 size_t drop_duplicate_triangles(Scene& scene) {

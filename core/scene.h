@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -135,18 +136,32 @@ struct WorldBox {
   }
 };
 
+/// How a glTF file is read.
+struct SceneReading {
+  /// Of its scenes; none: the file's default, else the first.
+  std::optional<int> scene;
+  /// Of its animations: a number, a name, or "all"; empty: all, but of those that move the same node in the same way
+  /// the first alone.
+  std::string animation;
+  /// Folder that the file's references may not leave; empty: the file's own.
+  std::filesystem::path root;
+  /// Faults that can be repaired are refused, not warned about.
+  bool strict = false;
+};
+
 /// A glTF file in memory, from which the scene at any time is made.
 /// @throws Error(bad_input) naming file and element: not glTF, truncated, missing buffer or image, an unknown required
-///   extension, indices out of range, NaN or infinite vertices, cyclic nodes, a path that leaves the file's folder.
-/// Ignored optional features (normal maps, skins, morph targets, unknown extensions) are warned about once.
+///   extension, indices out of range, NaN or infinite vertices, cyclic nodes, a path that leaves the root folder;
+///   Error(usage) for a scene or an animation that it has not.
+/// What is ignored, and what is repaired, is warned about once.
 class SceneFile {
  public:
-  explicit SceneFile(const std::filesystem::path& path);
+  explicit SceneFile(const std::filesystem::path& path, const SceneReading& reading = {});
   ~SceneFile();
   SceneFile(SceneFile&&) noexcept;
   SceneFile& operator=(SceneFile&&) noexcept;
 
-  /// The scene with the node animations of all the file's animations at `time_s`, held before their first and after
+  /// The scene with the file's animations (SceneReading::animation) at `time_s`, held before their first and after
   /// their last key (none: the rest pose). Cost: copies geometry and images.
   /// @throws Error(bad_input) when the transforms of that time are not finite.
   Scene at(double time_s) const;
@@ -169,7 +184,7 @@ class SceneFile {
 };
 
 /// SceneSource(path).at(time_s) (core/scene_source.h): of a glTF file, or a scene that is called builtin:NAME.
-Scene load_scene(const std::filesystem::path& path, double time_s = 0.0);
+Scene load_scene(const std::filesystem::path& path, double time_s = 0.0, const SceneReading& reading = {});
 
 /// Removes triangles that lie exactly on an earlier one with the same front: one surface, not two, for everything that
 /// counts area or emission. Triangles back to back stay. @returns how many went. Cost: one hash a triangle.

@@ -31,12 +31,12 @@ const SceneSource::BuiltIn& SceneSource::built_in(std::string_view name) {
               fmt::format("{}{}: there is no such built-in scene; there are:{}", kBuiltInPrefix, name, names));
 }
 
-SceneSource::SceneSource(const std::filesystem::path& path) {
+SceneSource::SceneSource(const std::filesystem::path& path, const SceneReading& reading) {
   const std::string name = path.string();
   if (name.starts_with(kBuiltInPrefix)) {
     built_in_ = &built_in(std::string_view(name).substr(kBuiltInPrefix.size()));
   } else {
-    file_.emplace(path);
+    file_.emplace(path, reading);
   }
 }
 
@@ -67,6 +67,8 @@ WorldBox SceneSource::whole_bounds() const {
 
 bool SceneSource::animated() const { return !file_ || file_->animated(); }
 
-Scene load_scene(const std::filesystem::path& path, double time_s) { return SceneSource(path).at(time_s); }
+Scene load_scene(const std::filesystem::path& path, double time_s, const SceneReading& reading) {
+  return SceneSource(path, reading).at(time_s);
+}
 
 }  // namespace volgi

@@ -20,7 +20,7 @@ class SceneSource {
   static constexpr std::string_view kBuiltInPrefix = "builtin:";
 
   /// @throws Error(usage) for a built-in scene that does not exist, naming those that do; otherwise as SceneFile.
-  explicit SceneSource(const std::filesystem::path& path);
+  explicit SceneSource(const std::filesystem::path& path, const SceneReading& reading = {});
 
   /// As SceneFile.
   Scene at(double time_s) const;

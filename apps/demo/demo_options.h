@@ -9,6 +9,7 @@
 #include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_options.h"
 #include "apps/volgi/light_options.h"
+#include "apps/volgi/reading_options.h"
 
 namespace volgi::demo {
 
@@ -18,6 +19,7 @@ struct DemoOptions {
   std::string size;                           // WxH; empty: 1280x720
   app::FrameCommandOptions frame;
   app::LightOptions light;
+  app::ReadingOptions reading;
   app::DeviceOptions device;
   std::string view, exposure, preset;
   std::vector<std::string> commands;  // --do, in their order

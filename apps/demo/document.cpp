@@ -11,9 +11,10 @@
 
 namespace volgi::demo {
 
-Document::Document(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s)
-    : files_(std::move(files)), light_(light), time_s_(time_s) {
-  for (const std::filesystem::path& file : files_) sources_.push_back(std::make_unique<SceneSource>(file));
+Document::Document(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s,
+                   SceneReading reading)
+    : files_(std::move(files)), reading_(std::move(reading)), light_(light), time_s_(time_s) {
+  for (const std::filesystem::path& file : files_) sources_.push_back(std::make_unique<SceneSource>(file, reading_));
   if (animated()) {
     for (const auto& source : sources_) box_.add(source->whole_bounds());
     for (const auto& source : sources_) parts_.push_back(source->at(time_s, box_));

@@ -21,9 +21,10 @@ namespace volgi::demo {
 class Document {
  public:
   /// @param files  not empty: the first one's frame of reference is the scene's, the others are put beside it.
-  /// @param light  what the command line adds.
+  /// @param light  what the command line adds. @param reading  of every file.
   /// @throws Error as SceneSource and LightOptions::apply.
-  Document(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s = 0.0);
+  Document(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s = 0.0,
+           SceneReading reading = {});
 
   const std::vector<std::filesystem::path>& files() const { return files_; }
   std::string title() const;  // the files' names
@@ -64,6 +65,7 @@ class Document {
   const app::LightOptions& light_options() const { return light_; }
   /// A soft sky and a lamp beside the camera, put there because nothing else shines.
   bool has_default_light() const { return default_light_; }
+  const SceneReading& reading() const { return reading_; }
 
  private:
   void light_up();
@@ -71,6 +73,7 @@ class Document {
   bool shines() const;
 
   std::vector<std::filesystem::path> files_;
+  SceneReading reading_;
   std::vector<std::unique_ptr<SceneSource>> sources_;
   std::vector<Scene> parts_;  // of several files: each alone
   app::LightOptions light_;

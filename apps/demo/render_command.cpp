@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "apps/demo/parameter_text.h"
+#include "apps/volgi/reading_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
 #include "screen/frame/registry.h"
@@ -89,6 +90,8 @@ std::string render_command(const Session& session, const std::filesystem::path& 
                 "no command: `volgi render` takes one file, and this scene is made of " + document.title());
   Arguments all{document.files().front().string(), "-o", out.string(), "--size",
                 fmt::format("{}x{}", session.size().x, session.size().y)};
+  const Arguments reading = app::ReadingOptions::arguments(document.reading());
+  all.insert(all.end(), reading.begin(), reading.end());
   add_words(session.camera_arguments(), all);  // numbers and options: nothing to quote
   if (document.animated()) {
     all.insert(all.end(), {"--time", fmt::format("{}", document.time_s())});

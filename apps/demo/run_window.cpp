@@ -95,7 +95,7 @@ WindowLoop::WindowLoop(const DemoOptions& options, Settings settings)
     : options_(options),
       events_(options.events),
       window_({options.picture_size(), "volgi", options.device.context.debug}),
-      viewer_(window_.context(), std::move(settings), options.settings_path(), options.light),
+      viewer_(window_.context(), std::move(settings), options.settings_path(), options.light, options.reading.reading),
       panels_(viewer_),
       handles_(viewer_),
       input_(viewer_, panels_, handles_),

@@ -9,11 +9,11 @@ namespace volgi::demo {
 
 namespace {
 
-SceneLoader::Result load(const std::vector<std::filesystem::path>& files, const app::LightOptions& light,
-                         double time_s) {
+SceneLoader::Result load(const std::vector<std::filesystem::path>& files, const app::LightOptions& light, double time_s,
+                         const SceneReading& reading) {
   SceneLoader::Result result;
   try {
-    result.document = std::make_unique<Document>(files, light, time_s);
+    result.document = std::make_unique<Document>(files, light, time_s, reading);
   } catch (const Error& error) {
     result.error = error.what();
     result.exit_code = int(error.code());
@@ -33,8 +33,9 @@ SceneLoader::~SceneLoader() {
   if (running_.valid()) running_.wait();
 }
 
-void SceneLoader::start(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s) {
-  Request request{std::move(files), light, time_s};
+void SceneLoader::start(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s,
+                        const SceneReading& reading) {
+  Request request{std::move(files), light, time_s, reading};
   if (busy()) {
     next_ = std::move(request);
   } else {
@@ -45,7 +46,7 @@ void SceneLoader::start(std::vector<std::filesystem::path> files, const app::Lig
 void SceneLoader::launch(Request request) {
   current_ = std::move(request);
   started_ = std::chrono::steady_clock::now();
-  running_ = std::async(std::launch::async, load, current_.files, current_.light, current_.time_s);
+  running_ = std::async(std::launch::async, load, current_.files, current_.light, current_.time_s, current_.reading);
 }
 
 double SceneLoader::seconds() const {

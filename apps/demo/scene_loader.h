@@ -16,7 +16,8 @@ namespace volgi::demo {
 class SceneLoader {
  public:
   ~SceneLoader();
-  void start(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s = 0.0);
+  void start(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s = 0.0,
+             const SceneReading& reading = {});
   bool busy() const { return running_.valid(); }
   /// Since start() [s]; 0 when not busy.
   double seconds() const;
@@ -41,6 +42,7 @@ class SceneLoader {
     std::vector<std::filesystem::path> files;
     app::LightOptions light;
     double time_s = 0.0;
+    SceneReading reading = {};
   };
   void launch(Request request);
 

@@ -33,18 +33,19 @@ Settings as_step(Settings settings, const Settings& now) {
 
 }  // namespace
 
-Session::Session(const gl::Context& context, Settings settings, app::LightOptions light)
+Session::Session(const gl::Context& context, Settings settings, app::LightOptions light, SceneReading reading)
     : software_(context.software()),
       settings_(std::move(settings)),
       good_settings_(settings_),
       light_(std::move(light)),
+      reading_(std::move(reading)),
       timer_(std::make_unique<gl::PassTimer>(software_, false)),
       untimed_(std::make_unique<gl::PassTimer>(software_, false)) {}
 
 // --- What is open.
 
 void Session::open(std::vector<std::filesystem::path> files, double time_s) {
-  loader_.start(std::move(files), light_, time_s);
+  loader_.start(std::move(files), light_, time_s, reading_);
 }
 
 void Session::append(const std::filesystem::path& file) {
@@ -55,7 +56,7 @@ void Session::append(const std::filesystem::path& file) {
     files = document_->files();
   }
   files.push_back(file);
-  loader_.start(std::move(files), light_, document_ ? document_->time_s() : 0.0);
+  loader_.start(std::move(files), light_, document_ ? document_->time_s() : 0.0, reading_);
 }
 
 void Session::wait_for_scene() {

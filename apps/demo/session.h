@@ -30,7 +30,7 @@ struct Message {
 /// window nor widgets; a window, a benchmark and a test all drive this. Needs a current gl::Context, on one thread.
 class Session {
  public:
-  Session(const gl::Context& context, Settings settings, app::LightOptions light);
+  Session(const gl::Context& context, Settings settings, app::LightOptions light, SceneReading reading = {});
 
   // --- What is open.
   /// Begins to read; the old scene stays until the new one is there, and for good where it cannot be read.
@@ -148,6 +148,7 @@ class Session {
   bool software_;
   Settings settings_, good_settings_;  // the last that made a frame
   app::LightOptions light_;
+  SceneReading reading_;
   UndoList<Settings> undo_;
   SceneLoader loader_;
   std::unique_ptr<Document> document_;

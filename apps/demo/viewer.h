@@ -17,8 +17,9 @@ namespace volgi::demo {
 class Viewer {
  public:
   Viewer(const gl::Context& context, Settings settings, std::filesystem::path settings_file,
-         app::LightOptions light_options)
-      : session(context, std::move(settings), std::move(light_options)), settings_file_(std::move(settings_file)) {}
+         app::LightOptions light_options, SceneReading reading = {})
+      : session(context, std::move(settings), std::move(light_options), std::move(reading)),
+        settings_file_(std::move(settings_file)) {}
 
   Session session;
   Truth truth;

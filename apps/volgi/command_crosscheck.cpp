@@ -7,6 +7,7 @@
 
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
+#include "apps/volgi/reading_options.h"
 #include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
@@ -20,6 +21,7 @@ namespace {
 
 struct CrosscheckCommand {
   std::filesystem::path scene_path;
+  ReadingOptions file;
   VolumeCommandOptions volume;
   std::vector<int> passes = {1, 8, 64};
   DeviceOptions device;
@@ -52,7 +54,7 @@ void print_table(const std::vector<CrosscheckRow>& rows) {
 int CrosscheckCommand::run() const {
   volume.limit_threads();
   const VolumeOptions options = volume.volume_options();
-  const Scene scene = load_scene(scene_path);
+  const Scene scene = load_scene(scene_path, 0.0, file.reading);
   const gl::Context context(device.context);
   const std::vector<CrosscheckRow> rows = crosscheck(scene, options, passes);
   const bool passed = std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.passed(); });
@@ -79,6 +81,7 @@ void add_crosscheck_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "crosscheck", "compare the volume on the GPU with its CPU twin, stage by stage; 1 when they differ");
   command->add_option("SCENE", options->scene_path, scene_help)->required();
+  options->file.add_to(*command);
   options->volume.add_to(*command);
   command->add_option("--passes", options->passes, "passes over the volume after which to compare")
       ->check(CLI::Range(1, 10000))

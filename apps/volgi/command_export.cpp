@@ -7,6 +7,7 @@
 
 #include "apps/volgi/commands.h"
 #include "apps/volgi/light_options.h"
+#include "apps/volgi/reading_options.h"
 #include "apps/volgi/scene_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/atomic_file.h"
@@ -29,6 +30,7 @@ struct ExportCommand {
   double time_s = 0.0;
   VolumeCommandOptions volume;
   LightOptions light;
+  ReadingOptions file;
   std::string stage = "radiance", backend = "auto";
   bool quiet = false;
 
@@ -117,7 +119,7 @@ int ExportCommand::run() const {
   VolumeOptions options = volume.volume_options();
   if (out.extension() != ".vdb") throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .vdb");
   check_writable(out);
-  Scene scene = load_scene(scene_path, time_s);
+  Scene scene = load_scene(scene_path, time_s, file.reading);
   light.apply(scene);
   volume.fit_grid(scene, options);
   if (scene.sky && has_radiance() && streaming_sky(scene, options) == nullptr)
@@ -162,6 +164,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb")->required()->type_name("FILE");
   options->volume.add_to(*command);
   options->light.add_to(*command);
+  options->file.add_to(*command);
   command
       ->add_option("--stage", options->stage,
                    "voxels: occupancy, albedo, normal, emission; radiance: fluence and spherical harmonics as well")

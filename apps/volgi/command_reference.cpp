@@ -45,7 +45,7 @@ ReferencePicture traced(const ReferenceOptions& options) {
   tracer.max_bounces = options.bounces;
   tracer.light = requested_light(options.light);
   if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
-  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s, options.scene.file.reading);
   options.scene.light.apply(scene);
   warn_of_open_scene(scene, glm::vec3(options.scene.camera(scene).world_from_camera[3]));
   return path_trace(scene, options.scene.camera(scene), tracer);
@@ -61,7 +61,7 @@ ReferencePicture gathered(const ReferenceOptions& options) {
   gather.threads = options.tracer.threads;
   if (options.visibility == "none") gather.visibility = VirtualLightGatherOptions::Visibility::none;
   const VirtualLightList list = read_virtual_lights(*options.virtual_lights);
-  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s);
+  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s, options.scene.file.reading);
   options.scene.light.apply(scene);
   return gather_virtual_lights(scene, options.scene.camera(scene), list, gather);
 }

@@ -240,7 +240,7 @@ int RenderCommand::run() {
   screen::FrameOptions options = frame.frame_options(scene.size());
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
   check_outputs();
-  const SceneSource source(scene.scene_path);
+  const SceneSource source(scene.scene_path, scene.file.reading);
   const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
   Scene loaded = animate.empty() && !whole_animation ? source.at(scene.time_s) : source.at(times.at(0), box);
   frame.volume.fit_grid(loaded, options.of<VolumeOptions>());

@@ -42,6 +42,7 @@ void SceneOptions::add_to(CLI::App& command) {
         ->type_name("X,Y,Z");
   };
   command.add_option("SCENE", scene_path, scene_help)->required()->type_name("FILE");
+  file.add_to(command);
   command.add_option("--time", time_s, "Time of the scene's animations [s]")
       ->check(check_finite)
       ->capture_default_str();

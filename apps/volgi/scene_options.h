@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/volgi/light_options.h"
+#include "apps/volgi/reading_options.h"
 #include "core/camera.h"
 #include "core/scene.h"
 
@@ -19,10 +20,11 @@ namespace volgi::app {
 /// Help on SCENE (core/scene_source.h).
 inline constexpr const char* scene_help = "glTF 2.0 scene (.gltf or .glb), or builtin:metaballs";
 
-/// What every command that looks at a scene takes: SCENE, --time, --camera N | --eye, --target, --yfov, --size WxH, and
-/// LightOptions.
+/// What every command that looks at a scene takes: SCENE, --time, --camera N | --eye, --target, --yfov, --size WxH,
+/// ReadingOptions and LightOptions.
 struct SceneOptions {
   std::filesystem::path scene_path;
+  ReadingOptions file;
   double time_s = 0.0;
   std::optional<int> camera_index;
   std::vector<double> eye, target;  // 3 numbers each, file's world frame

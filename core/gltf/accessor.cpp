@@ -155,7 +155,8 @@ void for_each_element(const Document& document, const tinygltf::Accessor& access
 
 void check_type(const Document& document, const tinygltf::Accessor& accessor, const Expected& expected,
                 const std::string& who) {
-  const bool is_vector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type <= TINYGLTF_TYPE_VEC4;
+  const bool is_vector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type <= TINYGLTF_TYPE_VEC4 ||
+                         accessor.type == TINYGLTF_TYPE_MAT4;
   const bool is_float = accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
   const bool is_short = component_size(accessor.componentType) <= 2;
   const bool good_component = is_float || (accessor.normalized && expected.normalized_integers && is_short) ||
@@ -194,8 +195,13 @@ Elements read_elements(const Document& document, int index, const Expected& expe
   elements.values.assign(accessor.count * elements.components, 0.0f);
   for_each_element(document, accessor, at, name, [&](size_t i, const unsigned char* bytes) {
     for (size_t c = 0; c < elements.components; ++c) {
-      const float value = load_float(bytes + c * size, accessor.componentType, accessor.normalized);
-      if (!std::isfinite(value)) refuse(document.path, fmt::format("{}: element {} is {}", name, i, value));
+      float value = load_float(bytes + c * size, accessor.componentType, accessor.normalized);
+      if (!std::isfinite(value)) {
+        const std::string what = fmt::format("{}: element {} is {}", name, i, value);
+        if (!expected.repair) refuse(document.path, what);
+        repair(document, what + "; it counts as 0");
+        value = 0.0f;
+      }
       elements.values[i * elements.components + c] = value;
     }
   });

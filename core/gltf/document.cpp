@@ -34,8 +34,13 @@ std::uint64_t word_at(const std::vector<unsigned char>& bytes, size_t offset) {
   return word;
 }
 
-/// JSON of a .glb, whose every chunk lies inside the file. (tinygltf forgets the second chunk's header.)
-std::string_view glb_json(const fs::path& file, const std::vector<unsigned char>& bytes) {
+struct Chunks {
+  std::string_view json;
+  std::string_view rest;  // the other chunks, with their headers
+};
+
+/// Of a .glb, whose every chunk lies inside the file. (tinygltf forgets the second chunk's header.)
+Chunks glb_chunks(const fs::path& file, const std::vector<unsigned char>& bytes) {
   constexpr size_t header_size = 12, chunk_header_size = 8;
   constexpr std::uint64_t json_type = 0x4E4F534A;
   if (bytes.size() < header_size + chunk_header_size) refuse(file, "the .glb file is truncated in its header");
@@ -54,20 +59,43 @@ std::string_view glb_json(const fs::path& file, const std::vector<unsigned char>
   if (length < header_size + chunk_header_size || word_at(bytes, 16) != json_type) {
     refuse(file, "the .glb file does not begin with a JSON chunk");
   }
-  return text_of(bytes, header_size + chunk_header_size, word_at(bytes, header_size));
+  const size_t json_begins = header_size + chunk_header_size, json_size = word_at(bytes, header_size);
+  return {text_of(bytes, json_begins, json_size),
+          text_of(bytes, json_begins + json_size, length - json_begins - json_size)};
 }
 
-/// tinygltf gets at the files that check_json resolved and at no other.
+/// A .glb of other JSON and the same other chunks.
+std::string glb_of(std::string json, std::string_view rest) {
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto word = [](size_t value) {
+    std::string out;
+    for (int byte = 0; byte < 4; ++byte) out += char(value >> (8 * byte) & 255u);
+    return out;
+  };
+  constexpr size_t headers = 20;
+  return std::string(glb_magic) + word(2) + word(headers + json.size() + rest.size()) + word(json.size()) + "JSON" +
+         json + std::string(rest);
+}
+
+/// tinygltf gets at what check_json has named and at nothing else.
 struct Files {
   const fs::path& document;
-  ExternalFiles paths;
+  Externals externals;
 
-  static bool exists(const std::string& name, void* self) { return static_cast<Files*>(self)->paths.contains(name); }
+  static bool exists(const std::string& name, void* self) {
+    return static_cast<Files*>(self)->externals.contains(name);
+  }
   static std::string same(const std::string& name, void*) { return name; }
   static bool write(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+  /// A buffer may be longer than the JSON says (glTF 2.0, 3.6.1).
   static bool read(std::vector<unsigned char>* out, std::string*, const std::string& name, void* self) {
-    const Files& files = *static_cast<Files*>(self);
-    *out = read_file(files.document, files.paths.at(name));
+    Files& files = *static_cast<Files*>(self);
+    External& from = files.externals.at(name);
+    *out = from.path.empty() ? std::move(from.bytes) : read_file(files.document, from.path);
+    if (from.size && out->size() < *from.size) {
+      refuse(files.document, fmt::format("{}: {} bytes instead of {}", from.shown, out->size(), *from.size));
+    }
+    if (from.size) out->resize(*from.size);
     return true;
   }
 };
@@ -81,30 +109,42 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
 
 }  // namespace
 
-Document read_document(const fs::path& path) {
+Document read_document(const fs::path& path, const SceneReading& reading) {
   std::error_code error;
   if (!fs::exists(path, error)) refuse(path, "there is no such file");
   if (!fs::is_regular_file(path, error)) refuse(path, "not a file");
-  const std::vector<unsigned char> bytes = read_file(path, path);
-  const bool binary = text_of(bytes, 0, 4) == glb_magic;
-  const std::string_view json = binary ? glb_json(path, bytes) : text_of(bytes, 0, bytes.size());
+  Document document{path, reading, {}, {}};
+  std::string text;
+  bool binary = false;
+  Files files{path, {}};
+  {
+    const std::vector<unsigned char> bytes = read_file(path, path);
+    binary = text_of(bytes, 0, 4) == glb_magic;
+    const Chunks chunks = binary ? glb_chunks(path, bytes) : Chunks{text_of(bytes, 0, bytes.size()), {}};
+    CheckedJson checked = check_json(path, reading, chunks.json);
+    text = binary ? glb_of(std::move(checked.text), chunks.rest) : std::move(checked.text);
+    files.externals = std::move(checked.externals);
+    document.missing_images = std::move(checked.missing_images);
+  }
+  if (text.size() > largest_file) refuse(path, "its text is larger than 2 GiB");
 
-  Files files{path, check_json(path, json)};
   tinygltf::TinyGLTF parser;
   parser.SetFsCallbacks({Files::exists, Files::same, Files::read, Files::write, &files});
   parser.SetImageLoader(keep_encoded, nullptr);
-  Document document{path, {}};
   std::string problems, warnings;
   bool parsed = false;
-  const auto size = unsigned(bytes.size());
+  const auto size = unsigned(text.size());
   try {
-    parsed = binary ? parser.LoadBinaryFromMemory(&document.model, &problems, &warnings, bytes.data(), size, "")
-                    : parser.LoadASCIIFromString(&document.model, &problems, &warnings, json.data(), size, "");
+    parsed = binary ? parser.LoadBinaryFromMemory(&document.model, &problems, &warnings,
+                                                  reinterpret_cast<const unsigned char*>(text.data()), size, "")
+                    : parser.LoadASCIIFromString(&document.model, &problems, &warnings, text.data(), size, "");
   } catch (const std::out_of_range& e) {  // an empty buffer
     problems = e.what();
   }
   if (!parsed) refuse(path, fmt::format("not a valid glTF file: {}", problems));
   if (!warnings.empty()) warn(path, warnings);
+  decompress_meshopt(document);
+  decompress_draco(document);
   return document;
 }
 

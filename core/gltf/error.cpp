@@ -29,6 +29,11 @@ void warn(const std::filesystem::path& file, std::string_view what) {
   warn_once(fmt::format("{}: {}", file.string(), one_line(what)));
 }
 
+void repair(const std::filesystem::path& file, const SceneReading& reading, std::string_view what) {
+  if (reading.strict) refuse(file, what);
+  warn(file, what);
+}
+
 std::string element(std::string_view kind, size_t index, const std::string& name) {
   if (name.empty()) return fmt::format("{} {}", kind, index);
   return fmt::format("{} {} '{}'", kind, index, one_line(name.substr(0, 60)));

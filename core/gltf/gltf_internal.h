@@ -1,53 +1,86 @@
 #pragma once
 // Private to core: how a glTF file becomes a Scene. Steps in the order in which scene.cpp calls them; each file checks
 // what it reads, because tinygltf checks little.
-#include <tiny_gltf.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <glm/gtc/type_precision.hpp>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/gltf/tinygltf_internal.h"
 #include "core/scene.h"
 
 namespace volgi::gltf {
 
-/// A parsed file. Its JSON has passed check_json; images hold their encoded bytes when they come from a URI.
+/// A parsed file. Its JSON has passed check_json; images hold their encoded bytes when they come from a URI. What is
+/// compressed has been decompressed.
 struct Document {
   std::filesystem::path path;
+  SceneReading reading;
   tinygltf::Model model;
+  std::set<int> missing_images;  // whose file is not there
 };
 
 // --- error.cpp
 /// @throws Error(bad_input) "FILE: WHAT", on one line of bounded length whatever the file's names contain.
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view what);
 void warn(const std::filesystem::path& file, std::string_view what);
+/// A fault that the caller repairs: warned about, or refused where reading is strict.
+void repair(const std::filesystem::path& file, const SceneReading& reading, std::string_view what);
+inline void repair(const Document& document, std::string_view what) { repair(document.path, document.reading, what); }
 /// "mesh 3 'wall'".
 std::string element(std::string_view kind, size_t index, const std::string& name);
 /// Refuses unless 0 <= index < size; WHO is the element that refers, KIND what it refers to.
 void check_index(const Document& document, int index, size_t size, const std::string& who, std::string_view kind);
 
 // --- json.cpp: before tinygltf sees the text
-/// Files that the JSON refers to, by the name under which tinygltf will ask for them.
-using ExternalFiles = std::map<std::string, std::filesystem::path>;
+/// What the JSON refers to, under the names that check_json has given it.
+struct External {
+  std::filesystem::path path;        // empty: `bytes` has it
+  std::vector<unsigned char> bytes;  // of a data URI
+  std::optional<size_t> size;        // of a buffer: the first so many bytes of it
+  std::string shown;                 // in messages
+};
+using Externals = std::map<std::string, External>;
+struct CheckedJson {
+  std::string text;  // as tinygltf takes it
+  Externals externals;
+  std::set<int> missing_images;
+};
 /// Refuses nesting deeper than any scene needs, properties of a wrong type (tinygltf would use their defaults),
-/// unsupported required extensions, and URIs that are missing or leave the file's folder.
-ExternalFiles check_json(const std::filesystem::path& file, std::string_view text);
+/// unsupported required extensions, and URIs that are missing or leave the root folder. Repairs whole numbers that are
+/// written as others (36.0), and gives every buffer and image a name that tinygltf does not decode.
+CheckedJson check_json(const std::filesystem::path& file, const SceneReading& reading, std::string_view text);
+
+// --- external.cpp
+void take_externals(const std::filesystem::path& file, const SceneReading& reading, nlohmann::json& root,
+                    CheckedJson& out);
 
 // --- uri.cpp
-/// Path of a relative URI. Refuses what is absolute, leaves the folder (also through a link) or is not a regular file.
-std::filesystem::path resolve_uri(const std::filesystem::path& file, const std::string& who, const std::string& uri);
-/// tinygltf also turns '+' into a space.
-std::string tinygltf_decoded(const std::string& uri);
+/// Path of a relative URI. Refuses what is absolute, leaves the root folder (also through a link) or is no regular
+/// file. Nothing where there is no such file.
+std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& file, const SceneReading& reading,
+                                                 const std::string& who, const std::string& uri);
+/// Bytes that a text with %XX stands for; nothing when an escape is malformed.
+std::optional<std::string> percent_decoded(const std::string& uri);
 
 // --- document.cpp
-Document read_document(const std::filesystem::path& path);
+Document read_document(const std::filesystem::path& path, const SceneReading& reading);
+
+// --- meshopt.cpp, draco.cpp: give compressed data buffers, views and accessors of its own
+void decompress_meshopt(Document& document);
+void decompress_draco(Document& document);
+/// A new buffer view on bytes. @throws Error(over_limit) when all of them together are more than a scene may have.
+int add_view(Document& document, std::vector<unsigned char> bytes, const std::string& who);
 
 // --- accessor.cpp
 /// Elements of an accessor as floats; normalized integers already in [-1,1] or [0,1].
@@ -61,6 +94,7 @@ struct Expected {
   std::set<size_t> components;       // 1 scalar ... 4
   bool normalized_integers = false;  // besides floats
   bool plain_integers = false;       // KHR_mesh_quantization
+  bool repair = false;               // what is no finite number becomes 0
 };
 
 /// The bytes of a buffer view, checked against its buffer.
@@ -69,7 +103,8 @@ struct Bytes {
   size_t size = 0;
 };
 Bytes view_bytes(const Document& document, int buffer_view, const std::string& who);
-/// Refuses an accessor that lies outside its buffer view, has a wrong type, or holds NaN or infinity.
+/// Refuses an accessor that lies outside its buffer view, has a wrong type, or holds NaN or infinity that are not to be
+/// repaired.
 Elements read_elements(const Document& document, int accessor, const Expected& expected, const std::string& who);
 std::vector<std::uint32_t> read_indices(const Document& document, int accessor, const std::string& who);
 /// Refuses any accessor of the file that lies outside its data, used or not, before anything is allocated for it.
@@ -77,7 +112,8 @@ void check_accessors(const Document& document);
 
 // --- material.cpp, texture.cpp
 struct Materials {
-  std::vector<Material> materials;  // those of the file, then the default material if a primitive needs it
+  std::vector<Material> materials;          // those of the file, then the default material if a primitive needs it
+  std::vector<std::array<int, 2>> uv_sets;  // by material: which TEXCOORD_n are its texture coordinates 0 and 1
   std::vector<TextureImage> images;
   std::vector<Texture> textures;
 };
@@ -119,30 +155,56 @@ struct Primitive {
   std::array<std::vector<glm::vec2>, 2> uv;
   std::vector<glm::vec4> colors;
   std::vector<glm::uvec3> triangles;
+  /// What a morph target adds, at full weight; without normals where it has none.
+  struct Target {
+    std::vector<glm::vec3> positions, normals;
+  };
+  std::vector<Target> targets;
+  /// Of a skin: four joints (indices into its list) and weights for each vertex, in sets; weights sum to 1.
+  struct Influences {
+    std::vector<glm::u16vec4> joints;
+    std::vector<glm::vec4> weights;
+  };
+  std::vector<Influences> influences;
 };
-/// Primitives with triangles; the material of those without one is `default_material`.
-std::vector<Primitive> read_mesh(const Document& document, size_t mesh, int default_material);
+/// Primitives with triangles; the material of those without one is the last of `materials`.
+std::vector<Primitive> read_mesh(const Document& document, size_t mesh, const Materials& materials);
+/// Targets added by their weights; those without a weight are left out.
+Primitive morphed(const Primitive& primitive, const std::vector<double>& weights);
+
+// --- skin.cpp
+struct Node;
+struct Skin {
+  std::vector<int> joints;                  // nodes
+  std::vector<glm::dmat4> joint_from_bind;  // inverseBindMatrices
+};
+std::vector<Skin> read_skins(const Document& document);
+/// Refuses vertices that name a joint that the node's skin does not have.
+void check_joints(const Document& document, const Node& node, const std::vector<Skin>& skins,
+                  const std::vector<Primitive>& primitives);
 
 // --- node.cpp
 struct Node {
   std::string name;
   int parent = -1;
-  int mesh = -1, camera = -1, light = -1;
+  int mesh = -1, camera = -1, light = -1, skin = -1;
   glm::dvec3 translation{0.0};
   glm::dquat rotation{1.0, 0.0, 0.0, 0.0};
   glm::dvec3 scale{1.0};
-  std::optional<glm::dmat4> matrix;  // instead of the three
+  std::optional<glm::dmat4> matrix;   // instead of the three
+  std::vector<double> morph_weights;  // empty: the mesh's own
+  std::vector<glm::dmat4> instances;  // EXT_mesh_gpu_instancing: the mesh is shown in each of these frames; else empty
 };
 std::vector<Node> read_nodes(const Document& document);
-/// Nodes of the default scene (or the first, or all roots), every parent before its children.
+/// Nodes of the scene that is read (or the first, or all roots), every parent before its children.
 std::vector<int> scene_nodes(const Document& document, const std::vector<Node>& nodes);
-/// World transforms of the nodes in `order`; refuses infinite ones.
+/// World transforms of all nodes; refuses infinite ones among those that `order` names.
 std::vector<glm::dmat4> world_from_nodes(const std::filesystem::path& file, const std::vector<Node>& nodes,
                                          const std::vector<int>& order);
 
 // --- animation.cpp
 struct Channel {
-  enum class Path { translation, rotation, scale };
+  enum class Path { translation, rotation, scale, weights };
   enum class Interpolation { linear, step, cubic };
   int node = 0;
   Path path = Path::translation;
@@ -170,6 +232,9 @@ struct PlacedMesh {
 };
 /// Counter-clockwise fronts, unit normals, no triangle without area (`dropped` counts those).
 PlacedMesh place_primitive(const Primitive& primitive, const glm::dmat4& world_from_node, size_t& dropped);
+/// The same by a skin, of whatever node shows it: each vertex where its joints carry it (glTF 2.0, 3.7.3.3).
+/// @param world_from_bind  of each joint.
+PlacedMesh place_skinned(const Primitive& primitive, const std::vector<glm::dmat4>& world_from_bind, size_t& dropped);
 /// Positions relative to the origin; normals for what has none.
 Mesh centred(PlacedMesh placed, const glm::dvec3& world_origin, size_t& dropped);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -15,8 +16,12 @@ using Json = nlohmann::json;
 constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
 
 const std::set<std::string_view> supported_extensions = {
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_texture_transform",           "KHR_mesh_quantization", "KHR_materials_unlit"};
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_texture_transform",
+    "KHR_mesh_quantization",      "KHR_materials_unlit",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+    "EXT_texture_webp",           "EXT_mesh_gpu_instancing"};
 
 /// Its specularFactor is not KHR_materials_specular's: read with checks of its own.
 constexpr std::string_view SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness";
@@ -26,6 +31,9 @@ const std::set<std::string_view> cosmetic_extensions = {
     "KHR_materials_variants",    "KHR_materials_clearcoat",  "KHR_materials_sheen",
     "KHR_materials_iridescence", "KHR_materials_anisotropy", "KHR_materials_dispersion",
     "KHR_materials_volume",      "KHR_xmp_json_ld",          "KHR_materials_diffuse_transmission"};
+
+/// Textures of formats that are not read; the file may have others beside them.
+constexpr std::string_view BASIS = "KHR_texture_basisu";
 
 enum class Kind { index, index_or_object, indices, size, number, numbers, number_or_numbers, text, flag, object, list };
 
@@ -62,6 +70,17 @@ const std::unordered_map<std::string_view, Kind>& property_kinds() {
 
 bool is_whole(const Json& value, std::uint64_t largest) {
   return value.is_number_unsigned() && value.get<std::uint64_t>() <= largest;
+}
+
+/// Whole numbers may be written 36.0 or 1e2 (glTF 2.0, 2.7: "should" not).
+void make_whole(Json& value) {
+  if (value.is_structured()) {
+    for (Json& child : value) make_whole(child);
+  } else if (value.is_number_float()) {
+    constexpr double largest = 9007199254740992.0;  // 2^53
+    const double number = value.get<double>();
+    if (number >= 0.0 && number <= largest && number == std::floor(number)) value = std::uint64_t(number);
+  }
 }
 
 bool is_index(const Json& value) { return is_whole(value, std::uint64_t(std::numeric_limits<int>::max())); }
@@ -109,13 +128,15 @@ const char* complaint(Kind kind, const Json& value) {
   return nullptr;
 }
 
+bool is_of_whole_numbers(Kind kind) { return kind == Kind::index || kind == Kind::indices || kind == Kind::size; }
+
 class PropertyCheck {
  public:
   explicit PropertyCheck(const std::filesystem::path& file) : file_(file) {}
 
-  void walk(const Json& value) {
+  void walk(Json& value) {
     if (value.is_object()) {
-      for (const auto& [key, child] : value.items()) visit(key, child);
+      for (auto& [key, child] : value.items()) visit(key, child);
     } else if (value.is_array()) {
       for (size_t i = 0; i < value.size(); ++i) {
         if (!value[i].is_structured()) continue;
@@ -127,15 +148,17 @@ class PropertyCheck {
   }
 
  private:
-  void visit(const std::string& key, const Json& child) {
+  void visit(const std::string& key, Json& child) {
     if (key == "extras") return;
     trail_.push_back(trail_.empty() ? key : "." + key);
     const auto kind = property_kinds().find(key);
+    if (kind != property_kinds().end() && is_of_whole_numbers(kind->second)) make_whole(child);
     const char* wrong = kind == property_kinds().end() ? nullptr : complaint(kind->second, child);
     if (wrong != nullptr) refuse(file_, fmt::format("{} must be {}", fmt::join(trail_, ""), wrong));
     if (key == "extensions") {
-      for (const auto& [name, extension] : child.items()) {
-        if (supported_extensions.contains(name)) visit(name, extension);
+      for (auto& [name, extension] : child.items()) {
+        // Meshopt's "mode" is a word; its numbers are checked where they are read.
+        if (supported_extensions.contains(name) && name != "EXT_meshopt_compression") visit(name, extension);
       }
     } else {
       walk(child);
@@ -171,7 +194,12 @@ void check_asset(const std::filesystem::path& file, const Json& root) {
     refuse(file, "not a glTF file: asset.version is missing");
   }
   const auto version = (*asset)["version"].get<std::string>();
-  if (!version.starts_with("2.")) refuse(file, fmt::format("glTF version {} is not supported, only 2.0 is", version));
+  if (!version.starts_with("2.")) {
+    refuse(file,
+           fmt::format("glTF version {} is not supported, only 2.0 is; Blender, or gltf-pipeline of npm, write it "
+                       "as 2.0",
+                       version));
+  }
 }
 
 void check_extensions(const std::filesystem::path& file, const Json& root) {
@@ -183,6 +211,9 @@ void check_extensions(const std::filesystem::path& file, const Json& root) {
       if (!name.is_string()) refuse(file, fmt::format("{} must be a list of strings", list));
       const auto text = name.get<std::string>();
       if (supported_extensions.contains(text) || text == SPECULAR_GLOSSINESS) continue;
+      if (text == BASIS && list == std::string_view("extensionsRequired")) {
+        refuse(file, fmt::format("requires {}: KTX2 textures are not read; export with PNG, JPEG or WebP", text));
+      }
       if (!cosmetic_extensions.contains(text) && list == std::string_view("extensionsRequired")) {
         refuse(file, fmt::format("requires the extension {}, which is not supported; export without it", text));
       }
@@ -191,24 +222,11 @@ void check_extensions(const std::filesystem::path& file, const Json& root) {
   }
 }
 
-void add_externals(const std::filesystem::path& file, const Json& root, const char* list, ExternalFiles& out) {
-  const auto elements = root.find(list);
-  if (elements == root.end()) return;
-  for (size_t i = 0; i < elements->size(); ++i) {
-    const Json& holder = (*elements)[i];
-    if (!holder.is_object() || !holder.contains("uri")) continue;
-    const auto uri = holder["uri"].get<std::string>();
-    const std::string who = fmt::format("{}[{}]", list, i);
-    if (tinygltf::IsDataURI(uri)) continue;
-    if (uri.starts_with("data:")) refuse(file, fmt::format("{} has a data URI of an unsupported media type", who));
-    out.emplace(tinygltf_decoded(uri), resolve_uri(file, who, uri));
-  }
-}
-
 }  // namespace
 
-ExternalFiles check_json(const std::filesystem::path& file, std::string_view text) {
+CheckedJson check_json(const std::filesystem::path& file, const SceneReading& reading, std::string_view text) {
   check_nesting(file, text);
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
   Json root;
   try {
     root = Json::parse(text);
@@ -219,10 +237,10 @@ ExternalFiles check_json(const std::filesystem::path& file, std::string_view tex
   check_asset(file, root);
   check_extensions(file, root);
   PropertyCheck(file).walk(root);
-  ExternalFiles files;
-  add_externals(file, root, "buffers", files);
-  add_externals(file, root, "images", files);
-  return files;
+  CheckedJson out;
+  take_externals(file, reading, root, out);
+  out.text = root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return out;
 }
 
 }  // namespace volgi::gltf

@@ -35,8 +35,13 @@ Light read_light(const Document& document, size_t index) {
   if (!(in.range >= 0.0) || in.range > 1e12) refuse(document.path, fmt::format("{}: its range is {}", who, in.range));
   light.range_m = float(in.range);
   if (light.type == Light::Type::spot) {
-    const double inner = in.spot.innerConeAngle;
+    double inner = in.spot.innerConeAngle;
     const double outer = in.spot.outerConeAngle;
+    if (inner > outer && outer > 0.0) {
+      repair(document, fmt::format("{}: its inner cone angle {} is larger than the outer one, {}, which counts", who,
+                                   inner, outer));
+      inner = outer;
+    }
     if (!(inner >= 0.0 && inner <= outer && outer > 0.0 && outer <= glm::half_pi<double>() + 1e-6)) {
       refuse(document.path,
              fmt::format("{}: its cone angles must be 0 <= inner <= outer <= pi/2, not {} and {}", who, inner, outer));

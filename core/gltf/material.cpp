@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/gltf/gltf_internal.h"
 
@@ -139,6 +140,23 @@ Material read_material(const Document& document, size_t index, TextureTable& tex
   return material;
 }
 
+/// Which two sets of texture coordinates a material's textures use; their places among the two become the textures'.
+std::array<int, 2> take_uv_sets(const Document& document, const std::string& who, Material& material) {
+  const std::array<TextureUse*, 4> uses{&material.base_color, &material.metallic, &material.emissive, &material.normal};
+  std::set<int> sets;
+  for (const TextureUse* use : uses) {
+    if (use->texture >= 0) sets.insert(use->texcoord);
+  }
+  if (sets.empty() || *sets.rbegin() <= 1) return {0, 1};
+  std::array<int, 2> taken{*sets.begin(), *sets.begin()};
+  if (sets.size() > 1) taken[1] = *std::next(sets.begin());
+  if (sets.size() > 2)
+    warn(document.path,
+         fmt::format("{} uses {} sets of texture coordinates; the first two are read", who, sets.size()));
+  for (TextureUse* use : uses) use->texcoord = use->texcoord == taken[0] ? 0 : use->texcoord == taken[1] ? 1 : 0;
+  return taken;
+}
+
 bool needs_default_material(const Document& document) {
   for (const tinygltf::Mesh& mesh : document.model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
@@ -169,7 +187,8 @@ Materials read_materials(const Document& document) {
   Materials out;
   TextureTable textures(document, out);
   for (size_t i = 0; i < document.model.materials.size(); ++i) {
-    out.materials.push_back(read_material(document, i, textures));
+    Material& material = out.materials.emplace_back(read_material(document, i, textures));
+    out.uv_sets.push_back(take_uv_sets(document, element("material", i, material.name), material));
   }
   if (needs_default_material(document)) {
     Material& of_gltf = out.materials.emplace_back();
@@ -178,6 +197,7 @@ Materials read_materials(const Document& document) {
   }
   warn_of_metals(document, out.materials);
   if (out.materials.empty()) out.materials.emplace_back().name = "default";
+  out.uv_sets.resize(out.materials.size(), {0, 1});
   return out;
 }
 

@@ -22,35 +22,80 @@ class PrimitiveReader {
   PrimitiveReader(const Document& document, const tinygltf::Primitive& in, std::string who)
       : document_(document), in_(in), who_(std::move(who)) {}
 
-  Primitive read(int default_material) {
+  Primitive read(const Materials& materials) {
     Primitive out;
-    out.material = in_.material < 0 ? default_material : in_.material;
+    out.material = in_.material < 0 ? int(materials.materials.size()) - 1 : in_.material;
     if (in_.material >= 0) check_index(document_, in_.material, document_.model.materials.size(), who_, "material");
     const Expected quantized_vec3{{3}, true, true};
     out.positions = attribute<glm::vec3>("POSITION", quantized_vec3, 0);
     const size_t count = out.positions.size();
-    out.normals = attribute<glm::vec3>("NORMAL", {{3}, true, false}, count);
-    out.uv[0] = attribute<glm::vec2>("TEXCOORD_0", {{2}, true, true}, count);
-    out.uv[1] = attribute<glm::vec2>("TEXCOORD_1", {{2}, true, true}, count);
+    out.normals = attribute<glm::vec3>("NORMAL", {{3}, true, false, true}, count);
+    const std::array<int, 2> sets = materials.uv_sets[size_t(out.material)];
+    for (size_t k = 0; k < 2; ++k) {
+      if (k == 1 && sets[1] == sets[0]) break;
+      out.uv[k] = attribute<glm::vec2>(fmt::format("TEXCOORD_{}", sets[k]), {{2}, true, true, true}, count);
+    }
     out.colors = attribute<glm::vec4>("COLOR_0", {{3, 4}, true, false}, count);
     out.triangles = triangles(std::uint32_t(count));
-    if (in_.attributes.contains("JOINTS_0")) warn(document_.path, "skins are ignored: meshes keep their bind pose");
-    if (!in_.targets.empty()) warn(document_.path, "morph targets are ignored");
+    read_targets(count, out);
+    read_influences(count, out);
     return out;
   }
 
  private:
   /// Empty when the primitive has none; `count` 0 accepts any number.
   template <typename Vec>
-  std::vector<Vec> attribute(const char* name, const Expected& expected, size_t count) const {
-    const auto found = in_.attributes.find(name);
-    if (found == in_.attributes.end()) return {};
+  std::vector<Vec> attribute(const std::string& name, const Expected& expected, size_t count) const {
+    return attribute_of<Vec>(in_.attributes, name, expected, count);
+  }
+  template <typename Vec>
+  std::vector<Vec> attribute_of(const std::map<std::string, int>& attributes, const std::string& name,
+                                const Expected& expected, size_t count) const {
+    const auto found = attributes.find(name);
+    if (found == attributes.end()) return {};
     const std::string label = fmt::format("{} {}", who_, name);
     auto values = vectors<Vec>(read_elements(document_, found->second, expected, label));
     if (count != 0 && values.size() != count) {
       refuse(document_.path, fmt::format("{} has {} elements for {} vertices", label, values.size(), count));
     }
     return values;
+  }
+
+  void read_targets(size_t count, Primitive& out) const {
+    constexpr size_t most = 1024;
+    if (in_.targets.size() > most)
+      refuse(document_.path, fmt::format("{} has {} morph targets", who_, in_.targets.size()));
+    for (const std::map<std::string, int>& target : in_.targets) {
+      Primitive::Target& made = out.targets.emplace_back();
+      made.positions = attribute_of<glm::vec3>(target, "POSITION", {{3}, true, true}, count);
+      made.normals = attribute_of<glm::vec3>(target, "NORMAL", {{3}, true, true, true}, count);
+    }
+  }
+
+  /// All sets of four, as far as there are any.
+  void read_influences(size_t count, Primitive& out) const {
+    constexpr int most = 8;
+    for (int set = 0; set < most; ++set) {
+      const auto joints = attribute<glm::vec4>(fmt::format("JOINTS_{}", set), {{4}, false, true}, count);
+      const auto weights = attribute<glm::vec4>(fmt::format("WEIGHTS_{}", set), {{4}, true, false, true}, count);
+      if (joints.empty() || weights.empty()) break;
+      Primitive::Influences& made = out.influences.emplace_back();
+      for (const glm::vec4& j : joints) made.joints.emplace_back(glm::max(j, glm::vec4(0.0f)));
+      for (const glm::vec4& w : weights) made.weights.push_back(glm::max(w, glm::vec4(0.0f)));
+    }
+    normalize_weights(count, out);
+  }
+
+  static void normalize_weights(size_t count, Primitive& out) {
+    for (size_t i = 0; i < count && !out.influences.empty(); ++i) {
+      float sum = 0.0f;
+      for (const auto& set : out.influences)
+        sum += set.weights[i].x + set.weights[i].y + set.weights[i].z + set.weights[i].w;
+      if (!(sum > 0.0f))
+        out.influences[0].weights[i] = glm::vec4(1.0f, 0.0f, 0.0f, 0.0f);
+      else
+        for (auto& set : out.influences) set.weights[i] /= sum;
+    }
   }
 
   std::vector<std::uint32_t> corner_list(std::uint32_t vertex_count) const {
@@ -110,6 +155,14 @@ void unshare_corners(Primitive& primitive) {
   unshared(primitive.uv[0]);
   unshared(primitive.uv[1]);
   unshared(primitive.colors);
+  for (Primitive::Target& target : primitive.targets) {
+    unshared(target.positions);
+    unshared(target.normals);
+  }
+  for (Primitive::Influences& set : primitive.influences) {
+    unshared(set.joints);
+    unshared(set.weights);
+  }
   for (std::uint32_t i = 0; i < primitive.triangles.size(); ++i) {
     primitive.triangles[i] = glm::uvec3(3 * i) + glm::uvec3(0, 1, 2);
   }
@@ -117,7 +170,20 @@ void unshare_corners(Primitive& primitive) {
 
 }  // namespace
 
-std::vector<Primitive> read_mesh(const Document& document, size_t index, int default_material) {
+Primitive morphed(const Primitive& primitive, const std::vector<double>& weights) {
+  Primitive out = primitive;
+  for (size_t k = 0; k < std::min(weights.size(), primitive.targets.size()); ++k) {
+    const auto weight = float(weights[k]);
+    if (weight == 0.0f) continue;
+    const Primitive::Target& target = primitive.targets[k];
+    for (size_t i = 0; i < target.positions.size(); ++i) out.positions[i] += weight * target.positions[i];
+    for (size_t i = 0; i < std::min(target.normals.size(), out.normals.size()); ++i)
+      out.normals[i] += weight * target.normals[i];
+  }
+  return out;
+}
+
+std::vector<Primitive> read_mesh(const Document& document, size_t index, const Materials& materials) {
   const tinygltf::Mesh& mesh = document.model.meshes[index];
   std::vector<Primitive> out;
   for (size_t i = 0; i < mesh.primitives.size(); ++i) {
@@ -134,7 +200,7 @@ std::vector<Primitive> read_mesh(const Document& document, size_t index, int def
       warn(document.path, fmt::format("{} has no POSITION and is ignored", who));
       continue;
     }
-    Primitive primitive = PrimitiveReader(document, in, who).read(default_material);
+    Primitive primitive = PrimitiveReader(document, in, who).read(materials);
     if (primitive.triangles.empty()) continue;
     if (primitive.normals.empty()) unshare_corners(primitive);
     out.push_back(std::move(primitive));

@@ -99,6 +99,34 @@ PlacedMesh place_primitive(const Primitive& primitive, const glm::dmat4& world_f
   return placed;
 }
 
+PlacedMesh place_skinned(const Primitive& primitive, const std::vector<glm::dmat4>& world_from_bind, size_t& dropped) {
+  PlacedMesh placed;
+  Mesh& mesh = placed.mesh;
+  mesh.material = primitive.material;
+  mesh.uv = primitive.uv;
+  mesh.colors = primitive.colors;
+  mesh.triangles = primitive.triangles;
+  mesh.normals.assign(primitive.normals.size(), glm::vec3(0.0f));
+  std::vector<bool> mirrored(primitive.positions.size(), false);
+  for (size_t i = 0; i < primitive.positions.size(); ++i) {
+    glm::dmat4 m(0.0);
+    for (const Primitive::Influences& set : primitive.influences) {
+      for (int k = 0; k < 4; ++k) {
+        if (set.weights[i][k] > 0.0f) m += double(set.weights[i][k]) * world_from_bind[set.joints[i][k]];
+      }
+    }
+    placed.positions.emplace_back(m * glm::dvec4(glm::dvec3(primitive.positions[i]), 1.0));
+    const glm::dmat3 linear(m);
+    mirrored[i] = glm::determinant(linear) < 0.0;
+    if (i < primitive.normals.size()) mesh.normals[i] = world_normals({primitive.normals[i]}, linear)[0];
+  }
+  for (glm::uvec3& t : mesh.triangles) {
+    if (mirrored[t.x]) std::swap(t.y, t.z);
+  }
+  dropped += drop_without_area(mesh.triangles, placed.positions);
+  return placed;
+}
+
 Mesh centred(PlacedMesh placed, const glm::dvec3& world_origin, size_t& dropped) {
   Mesh mesh = std::move(placed.mesh);
   mesh.positions.reserve(placed.positions.size());

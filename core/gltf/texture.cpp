@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
+#include <webp/decode.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,11 @@ namespace {
 
 constexpr int largest_edge = 32768;
 constexpr std::int64_t max_pixels = std::int64_t(1) << 28;  // 1 GiB of RGBA
+
+bool is_webp(Bytes bytes) {
+  return bytes.size >= 12 && std::equal(bytes.data, bytes.data + 4, "RIFF") &&
+         std::equal(bytes.data + 8, bytes.data + 12, "WEBP");
+}
 
 /// glTF allows PNG and JPEG; stb's decoders of other formats are never let near a file.
 bool is_png_or_jpeg(Bytes bytes) {
@@ -86,19 +92,39 @@ void apply_transform(const Document& document, const tinygltf::Value& transform,
 
 }  // namespace
 
+namespace {
+
+void check_size(const Document& document, int width, int height, const std::string& name) {
+  if (width >= 1 && height >= 1 && width <= largest_edge && height <= largest_edge &&
+      std::int64_t(width) * height <= max_pixels)
+    return;
+  refuse(document.path, fmt::format("{} has {}x{} pixels, which is too large", name, width, height));
+}
+
+TextureImage decode_webp(const Document& document, Bytes bytes, const std::string& name) {
+  int width = 0, height = 0;
+  if (WebPGetInfo(bytes.data, bytes.size, &width, &height) == 0)
+    refuse(document.path, fmt::format("{} is no WebP that can be read", name));
+  check_size(document, width, height, name);
+  TextureImage image{width, height, std::vector<std::uint8_t>(size_t(width) * size_t(height) * 4)};
+  if (WebPDecodeRGBAInto(bytes.data, bytes.size, image.rgba.data(), image.rgba.size(), 4 * width) == nullptr)
+    refuse(document.path, fmt::format("{} cannot be decoded", name));
+  return image;
+}
+
+}  // namespace
+
 TextureImage decode_image(const Document& document, size_t index) {
   const tinygltf::Image& in = document.model.images[index];
   const std::string name = element("image", index, in.name.empty() ? in.uri : in.name);
   const Bytes bytes =
       in.bufferView >= 0 ? view_bytes(document, in.bufferView, name) : Bytes{in.image.data(), in.image.size()};
   int width = 0, height = 0, channels = 0;
+  if (is_webp(bytes)) return decode_webp(document, bytes, name);
   const bool known = is_png_or_jpeg(bytes) && bytes.size <= size_t(std::numeric_limits<int>::max()) &&
                      stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels) != 0;
-  if (!known) refuse(document.path, fmt::format("{} is neither a PNG nor a JPEG that can be read", name));
-  if (width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
-      std::int64_t(width) * height > max_pixels) {
-    refuse(document.path, fmt::format("{} has {}x{} pixels, which is too large", name, width, height));
-  }
+  if (!known) refuse(document.path, fmt::format("{} is no PNG, JPEG or WebP that can be read", name));
+  check_size(document, width, height, name);
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) refuse(document.path, fmt::format("{} cannot be decoded: {}", name, stbi_failure_reason()));
@@ -121,14 +147,37 @@ int TextureTable::image(int file_image, const std::string& who) {
   return known;
 }
 
+namespace {
+
+/// The image of a texture: WebP where the file has it, else the one that every reader knows; -1: none that is read.
+int source_of(const Document& document, const tinygltf::Texture& in, const std::string& name) {
+  int source = in.source;
+  const auto webp = in.extensions.find("EXT_texture_webp");
+  if (webp != in.extensions.end() && webp->second.Has("source")) source = webp->second.Get("source").GetNumberAsInt();
+  if (source < 0) {
+    repair(document, fmt::format("{}: no image that can be read{}; it counts as white", name,
+                                 in.extensions.contains("KHR_texture_basisu") ? " (KTX2 is not)" : ""));
+    return -1;
+  }
+  check_index(document, source, document.model.images.size(), name, "image");
+  if (!document.missing_images.contains(source)) return source;
+  const tinygltf::Image& image = document.model.images[size_t(source)];
+  repair(document, fmt::format("{}: missing file '{}'; the texture counts as white", name, image.name));
+  return -1;
+}
+
+}  // namespace
+
 int TextureTable::texture(int file_texture, const std::string& who) {
   check_index(document_, file_texture, document_.model.textures.size(), who, "texture");
   int& known = texture_of_file_[size_t(file_texture)];
   if (known < 0) {
     const tinygltf::Texture& in = document_.model.textures[size_t(file_texture)];
     const std::string name = element("texture", size_t(file_texture), in.name);
+    const int source = source_of(document_, in, name);
+    if (source < 0) return -1;
     const Sampler sampler = read_sampler(document_, in.sampler, name);
-    out_.textures.push_back({image(in.source, name), sampler});
+    out_.textures.push_back({image(source, name), sampler});
     known = int(out_.textures.size()) - 1;
   }
   return known;
@@ -138,14 +187,13 @@ TextureUse TextureTable::use(const tinygltf::TextureInfo& info, const std::strin
   TextureUse use;
   if (info.index < 0) return use;
   use.texture = texture(info.index, who);
+  if (use.texture < 0) return {};
   use.texcoord = info.texCoord;
   const auto transform = info.extensions.find("KHR_texture_transform");
   if (transform != info.extensions.end() && transform->second.IsObject()) {
     apply_transform(document_, transform->second, use, who);
   }
-  if (use.texcoord < 0 || use.texcoord > 1) {
-    refuse(document_.path, fmt::format("{} uses TEXCOORD_{}; only 0 and 1 are supported", who, use.texcoord));
-  }
+  if (use.texcoord < 0) refuse(document_.path, fmt::format("{} uses TEXCOORD_{}", who, use.texcoord));
   return use;
 }
 

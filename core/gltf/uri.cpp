@@ -16,7 +16,17 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// Nothing when an escape is not %XX.
+bool has_scheme(const std::string& uri) {
+  const size_t end = uri.find_first_of(":/?#");
+  return end != std::string::npos && uri[end] == ':';
+}
+
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
+}
+
+}  // namespace
+
 std::optional<std::string> percent_decoded(const std::string& uri) {
   std::string out;
   for (size_t i = 0; i < uri.size(); ++i) {
@@ -33,43 +43,36 @@ std::optional<std::string> percent_decoded(const std::string& uri) {
   return out;
 }
 
-bool has_scheme(const std::string& uri) {
-  const size_t end = uri.find_first_of(":/?#");
-  return end != std::string::npos && uri[end] == ':';
-}
-
-bool climbs(const fs::path& relative) { return std::find(relative.begin(), relative.end(), "..") != relative.end(); }
-
-bool lies_in(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
-}  // namespace
-
-fs::path resolve_uri(const fs::path& file, const std::string& who, const std::string& uri) {
-  const std::optional<std::string> decoded = percent_decoded(uri);
-  if (!decoded || decoded->empty() || decoded->find('\0') != std::string::npos) {
+std::optional<fs::path> resolve_uri(const fs::path& file, const SceneReading& reading, const std::string& who,
+                                    const std::string& uri) {
+  // Names are written raw, too: what is no escape stands for itself.
+  const std::string decoded = percent_decoded(uri).value_or(uri);
+  if (decoded.empty() || decoded.find('\0') != std::string::npos)
     refuse(file, fmt::format("{} has a malformed URI '{}'", who, uri));
-  }
-  const fs::path relative(*decoded);
-  if (has_scheme(uri) || has_scheme(*decoded) || relative.is_absolute() || climbs(relative)) {
-    refuse(file, fmt::format("{}: the URI '{}' leaves the file's folder, which is not allowed", who, *decoded));
-  }
+  const fs::path relative(decoded);
+  if (has_scheme(uri) || has_scheme(decoded) || relative.is_absolute())
+    refuse(file, fmt::format("{}: the URI '{}' leaves the file's folder, which is not allowed", who, decoded));
   std::error_code error;
   const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
-  fs::path target = fs::weakly_canonical(folder / relative, error);
-  if (error || !fs::exists(target, error)) refuse(file, fmt::format("{}: missing file '{}'", who, *decoded));
-  if (!lies_in(target, folder)) {
-    refuse(file, fmt::format("{}: '{}' is a link out of the file's folder, which is not allowed", who, *decoded));
+  const fs::path root = reading.root.empty() ? folder : fs::canonical(reading.root, error);
+  if (error) refuse(file, fmt::format("--root {}: there is no such folder", reading.root.string()));
+  // Without links first: what is outside is not even looked for.
+  const fs::path written = (folder / relative).lexically_normal();
+  const bool outside = !lies_in(written, root);
+  fs::path target = outside ? written : fs::weakly_canonical(written, error);
+  if (outside || !lies_in(target, root)) {
+    refuse(file, fmt::format("{}: '{}' leads out of {}, which is not allowed; --root FOLDER allows more", who, decoded,
+                             reading.root.empty() ? "the file's folder" : "the root folder"));
   }
-  if (!fs::is_regular_file(target, error)) refuse(file, fmt::format("{}: '{}' is not a file", who, *decoded));
+  if (error || !fs::exists(target, error)) {
+    // A file whose name holds what looks like an escape.
+    const fs::path raw = (folder / fs::path(uri)).lexically_normal();
+    if (decoded == uri || !lies_in(raw, root) || !fs::is_regular_file(raw, error)) return std::nullopt;
+    target = fs::weakly_canonical(raw, error);
+    if (error || !lies_in(target, root)) return std::nullopt;
+  }
+  if (!fs::is_regular_file(target, error)) refuse(file, fmt::format("{}: '{}' is not a file", who, decoded));
   return target;
-}
-
-std::string tinygltf_decoded(const std::string& uri) {
-  std::string spaced = uri;
-  std::replace(spaced.begin(), spaced.end(), '+', ' ');
-  return percent_decoded(spaced).value_or(spaced);
 }
 
 }  // namespace volgi::gltf

@@ -91,7 +91,7 @@ TEST(VirtualLightList, RefusesToWriteWhatItWouldNotRead) {
   EXPECT_NE(message([](auto& l) { l.flux.y = std::nanf(""); }).find("light 1: flux"), std::string::npos);
   EXPECT_NE(message([](auto& l) { l.position.x = INFINITY; }).find("light 1: position"), std::string::npos);
   EXPECT_NE(message([](auto& l) { l.normal *= 2.0f; }).find("light 1: normal"), std::string::npos);
-  EXPECT_NE(message([](auto& l) { l.kind = 3; }).find("light 1: kind"), std::string::npos);
+  EXPECT_NE(message([](auto& l) { l.kind = 4; }).find("light 1: kind"), std::string::npos);
   EXPECT_NE(error_of([] { write_virtual_lights("/no such folder/l.json", {}); }, ExitCode::cannot_write)
                 .find("no such folder"),
             std::string::npos);

@@ -57,10 +57,11 @@ GltfWriter rich_scene() {
 
 class Hostile : public ::testing::Test {
  protected:
-  /// The file must be refused as bad input, on one line that names it and contains TEXT.
+  /// The file must be refused as bad input, on one line that names it and contains TEXT. What can be repaired is
+  /// another test's (scene_tolerance_test.cpp).
   void expect_refused(const fs::path& path, const std::string& text) {
     try {
-      load_scene(path, 0.5);
+      load_scene(path, 0.5, {.scene = {}, .animation = {}, .root = {}, .strict = true});
       ADD_FAILURE() << "accepted; expected: " << text;
     } catch (const Error& error) {
       const std::string message = error.what();
@@ -157,30 +158,28 @@ TEST_F(Hostile, NonFiniteNormalsAndTransforms) {
 
 TEST_F(Hostile, IndicesBetweenElements) {
   for (const int bad : {-1, 99, std::numeric_limits<int>::max()}) {
-    for (const char* pointer :
-         {"/nodes/0/mesh",
-          "/nodes/2/camera",
-          "/nodes/1/extensions/KHR_lights_punctual/light",
-          "/nodes/3/children/0",
-          "/scenes/0/nodes/0",
-          "/scene",
-          "/meshes/0/primitives/0/material",
-          "/meshes/0/primitives/0/indices",
-          "/meshes/0/primitives/0/attributes/POSITION",
-          "/meshes/0/primitives/0/attributes/NORMAL",
-          "/accessors/0/bufferView",
-          "/accessors/0/sparse/indices/bufferView",
-          "/accessors/0/sparse/values/bufferView",
-          "/bufferViews/0/buffer",
-          "/images/0/bufferView",
-          "/textures/0/source",
-          "/textures/0/sampler",
-          "/materials/0/pbrMetallicRoughness/baseColorTexture/index",
-          "/animations/0/channels/0/sampler",
-          "/animations/0/channels/0/target/node",
-          "/animations/0/samplers/0/input",
-          "/animations/0/samplers/0/output",
-          "/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/texCoord"}) {
+    for (const char* pointer : {"/nodes/0/mesh",
+                                "/nodes/2/camera",
+                                "/nodes/1/extensions/KHR_lights_punctual/light",
+                                "/nodes/3/children/0",
+                                "/scenes/0/nodes/0",
+                                "/scene",
+                                "/meshes/0/primitives/0/material",
+                                "/meshes/0/primitives/0/indices",
+                                "/meshes/0/primitives/0/attributes/POSITION",
+                                "/meshes/0/primitives/0/attributes/NORMAL",
+                                "/accessors/0/bufferView",
+                                "/accessors/0/sparse/indices/bufferView",
+                                "/accessors/0/sparse/values/bufferView",
+                                "/bufferViews/0/buffer",
+                                "/images/0/bufferView",
+                                "/textures/0/source",
+                                "/textures/0/sampler",
+                                "/materials/0/pbrMetallicRoughness/baseColorTexture/index",
+                                "/animations/0/channels/0/sampler",
+                                "/animations/0/channels/0/target/node",
+                                "/animations/0/samplers/0/input",
+                                "/animations/0/samplers/0/output"}) {
       expect_change_refused(pointer, bad, "");
     }
   }
@@ -357,7 +356,7 @@ TEST_F(Hostile, TruncatedAndMissingBuffers) {
   writer.root["buffers"] = Json::array({{{"byteLength", 64}, {"uri", "data:application/octet-stream;base64,AAAA"}}});
   expect_refused(writer.save_embedded(folder / "short.gltf"), "");
   writer.root["buffers"] = Json::array({{{"byteLength", 64}, {"uri", "data:audio/wav;base64,AAAA"}}});
-  expect_refused(writer.save_embedded(folder / "type.gltf"), "media type");
+  expect_refused(writer.save_embedded(folder / "type.gltf"), "3 bytes instead of 64");
 }
 
 TEST_F(Hostile, UrisThatLeaveTheFolder) {
@@ -373,24 +372,25 @@ TEST_F(Hostile, UrisThatLeaveTheFolder) {
        {std::string("../secret.bin"), std::string("sub/../../secret.bin"), std::string("%2e%2e/secret.bin"),
         std::string("%2e%2e%2fsecret.bin"), std::string("..%2Fsecret.bin"), secret, "file://" + secret,
         "%2F" + secret.substr(1), std::string("http://localhost/secret.bin"), std::string("link.bin"),
-        std::string("folder/secret.bin"), std::string("sub/../good.bin"), std::string("C:\\secret.bin")}) {
+        std::string("folder/secret.bin"), std::string("C:\\secret.bin")}) {
     SCOPED_TRACE(uri);
     test::write_bytes(path, writer.finished(uri).dump());
-    expect_refused(path, "folder, which is not allowed");
+    expect_refused(path, "which is not allowed");
     GltfWriter image = rich_scene();
     image.root["images"][0] = {{"uri", uri}};
-    expect_refused(image.save_glb(folder / "in/scene.glb"), "folder, which is not allowed");
+    expect_refused(image.save_glb(folder / "in/scene.glb"), "which is not allowed");
   }
-  for (const std::string& uri :
-       {std::string("bad%zz.bin"), std::string("bad%2"), std::string("nul%00.bin"), std::string("")}) {
+  for (const std::string& uri : {std::string("nul%00.bin"), std::string("")}) {
     SCOPED_TRACE(uri);
     Json json = writer.finished("x");
     json["buffers"][0]["uri"] = uri;
     test::write_bytes(path, json.dump());
     expect_refused(path, "malformed URI");
   }
-  test::write_bytes(path, writer.finished("good.bin").dump());
-  EXPECT_EQ(load_scene(path).triangle_count(), 2u);
+  for (const char* uri : {"good.bin", "sub/../good.bin", "./good.bin"}) {
+    test::write_bytes(path, writer.finished(uri).dump());
+    EXPECT_EQ(load_scene(path).triangle_count(), 2u);
+  }
 }
 
 TEST_F(Hostile, Images) {
@@ -416,8 +416,8 @@ TEST_F(Hostile, Images) {
 
 TEST_F(Hostile, RequiredExtensions) {
   writer = rich_scene();
-  writer.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  expect_refused("KHR_draco_mesh_compression");
+  writer.root["extensionsRequired"] = {"VENDOR_new_geometry"};
+  expect_refused("VENDOR_new_geometry");
   writer.root["extensionsRequired"] = {3};
   expect_refused("extensionsRequired");
   writer.root["extensionsRequired"] = {"KHR_texture_transform", "KHR_lights_punctual",

@@ -369,7 +369,7 @@ TEST_F(SceneMaterials, RequiredCosmeticExtensionsAreWarnedAbout) {
     EXPECT_EQ(load().materials.size(), 1u) << name;
     EXPECT_NE(::testing::internal::GetCapturedStderr().find(name), std::string::npos);
   }
-  writer.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  writer.root["extensionsRequired"] = {"VENDOR_new_geometry"};
   EXPECT_THROW(load(), Error);
 }
 
@@ -423,15 +423,14 @@ TEST_F(SceneMaterials, IgnoredFeaturesAreWarnedAboutOnce) {
   writer.root["extensionsUsed"] = {"KHR_materials_clearcoat"};
   material()["extensions"]["KHR_materials_clearcoat"] = Json::object();
   const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
-  const Json primitive = {{"material", 0}, {"attributes", {{"POSITION", p}}}, {"targets", {{{"POSITION", p}}}}};
-  writer.mesh_node(primitive, {{"skin", 0}});
-  writer.mesh_node(primitive, {{"skin", 0}});
-  writer.push("skins", {{"joints", {0}}});
+  writer.mesh_node({{"material", 0}, {"attributes", {{"POSITION", p}}}});
+  writer.mesh_node({{"mode", 0}, {"material", 0}, {"attributes", {{"POSITION", p}}}});
+  writer.mesh_node({{"mode", 1}, {"material", 0}, {"attributes", {{"POSITION", p}}}});
   ::testing::internal::CaptureStderr();
   load();
   load();
   const std::string warnings = ::testing::internal::GetCapturedStderr();
-  for (const char* text : {"KHR_materials_clearcoat", "skins", "morph"}) {
+  for (const char* text : {"KHR_materials_clearcoat", "points and lines"}) {
     const size_t first = warnings.find(text);
     ASSERT_NE(first, std::string::npos) << text;
     EXPECT_EQ(warnings.find(text, first + 1), std::string::npos) << text;

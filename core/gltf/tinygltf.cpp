@@ -1,0 +1,2 @@
+#define TINYGLTF_IMPLEMENTATION
+#include "core/gltf/tinygltf_internal.h"
