@@ -1,5 +1,8 @@
 #include "core/emitter_points.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -45,21 +48,61 @@ int lattice_of(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
   return int(std::clamp(std::ceil(2.0 * texels), 4.0, 128.0));
 }
 
-/// Mean of emitted radiance times alpha: the centres of n² equal triangles.
-glm::dvec3 mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
-  const int n = lattice_of(scene, mesh, triangle);
+/// Emitted radiance of a textured opaque triangle at its barycentrics: what surface_point() says, and no more.
+class EmissionOfTexture {
+ public:
+  EmissionOfTexture(const Scene& scene, const Mesh& mesh, std::uint32_t triangle)
+      : scene_(scene), material_(scene.materials[size_t(mesh.material)]) {
+    const auto& uv = mesh.uv[size_t(material_.emissive.texcoord)];
+    if (uv.empty()) return;
+    const glm::uvec3 t = mesh.triangles[triangle];
+    for (int k = 0; k < 3; ++k) corner_[k] = glm::vec2(material_.emissive.uv_from_texcoord * glm::vec3(uv[t[k]], 1.0f));
+  }
+  glm::dvec3 at(double u, double v) const {
+    const glm::vec2 place = float(1.0 - u - v) * corner_[0] + float(u) * corner_[1] + float(v) * corner_[2];
+    const glm::vec3 texel(sample_texture(scene_, material_.emissive.texture, place, true));
+    return glm::dvec3(material_.emissive_radiance * texel);
+  }
+
+ private:
+  const Scene& scene_;
+  const Material& material_;
+  glm::vec2 corner_[3] = {};
+};
+
+/// Mean of f over a triangle: at the centres of n² equal ones.
+template <typename F>
+glm::dvec3 mean_of(int n, const F& f) {
   glm::dvec3 sum(0.0);
-  const auto add = [&](double u, double v) {
-    const SurfacePoint p = surface_point(scene, mesh, triangle, float(u / n), float(v / n));
-    sum += glm::dvec3(p.emission) * double(p.alpha);
-  };
   for (int j = 0; j < n; ++j) {
     for (int i = 0; i + j < n; ++i) {
-      add(i + 1.0 / 3.0, j + 1.0 / 3.0);
-      if (i + j + 1 < n) add(i + 2.0 / 3.0, j + 2.0 / 3.0);
+      sum += f((i + 1.0 / 3.0) / n, (j + 1.0 / 3.0) / n);
+      if (i + j + 1 < n) sum += f((i + 2.0 / 3.0) / n, (j + 2.0 / 3.0) / n);
     }
   }
   return sum / double(n * n);
+}
+
+/// Mean of emitted radiance times alpha.
+glm::dvec3 mean_emission(const Scene& scene, const Mesh& mesh, std::uint32_t triangle) {
+  const Material& material = scene.materials[size_t(mesh.material)];
+  const int n = lattice_of(scene, mesh, triangle);
+  if (material.emissive.texture >= 0 && material.alpha_mode == AlphaMode::opaque && !material.unlit) {
+    const EmissionOfTexture emission(scene, mesh, triangle);
+    return mean_of(n, [&](double u, double v) { return emission.at(u, v); });
+  }
+  return mean_of(n, [&](double u, double v) {
+    const SurfacePoint p = surface_point(scene, mesh, triangle, float(u), float(v));
+    return glm::dvec3(p.emission) * double(p.alpha);
+  });
+}
+
+std::vector<glm::dvec3> mean_emissions(const Scene& scene, const Mesh& mesh) {
+  std::vector<glm::dvec3> means(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, means.size(), 64), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t t = range.begin(); t < range.end(); ++t) means[t] = mean_emission(scene, mesh, std::uint32_t(t));
+  });
+  return means;
 }
 
 std::vector<EmitterPoint> in_order_of(const std::vector<std::uint64_t>& places,
@@ -82,9 +125,10 @@ EmitterPoints::EmitterPoints(const Scene& scene) : scene_(&scene) {
     const Mesh& mesh = scene.meshes[m];
     const Material& material = scene.materials[size_t(mesh.material)];
     if (!material.is_emissive()) continue;
+    const std::vector<glm::dvec3> means = mean_emissions(scene, mesh);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const double area = area_of(mesh, t);
-      const glm::dvec3 emission = mean_emission(scene, mesh, t);
+      const glm::dvec3 emission = means[t];
       // Bright spots that the lattice missed still get a point now and then.
       const double weight = std::max(luminance(emission), 1e-3 * luminance(material.emissive_radiance)) * area;
       if (!(weight > 0.0)) continue;

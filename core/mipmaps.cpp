@@ -21,34 +21,86 @@ Taps taps(int i, int coarse, int fine) {
   return {std::clamp(first, 0, fine - 1), std::clamp(first + 1, 0, fine - 1), at - float(first)};
 }
 
-MipLevel coarser(const MipLevel& fine) {
-  MipLevel coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
-  coarse.texels.reserve(size_t(coarse.width) * size_t(coarse.height));
-  const auto at = [&](int x, int y) { return fine.texels[size_t(y) * size_t(fine.width) + size_t(x)]; };
-  for (int y = 0; y < coarse.height; ++y) {
-    const Taps v = taps(y, coarse.height, fine.height);
-    for (int x = 0; x < coarse.width; ++x) {
-      const Taps u = taps(x, coarse.width, fine.width);
-      coarse.texels.push_back(glm::mix(glm::mix(at(u.first, v.first), at(u.second, v.first), u.share),
-                                       glm::mix(at(u.first, v.second), at(u.second, v.second), u.share), v.share));
+/// Makes rows of coarser levels of those before them, as soon as both that they need are there.
+class RowPyramid {
+ public:
+  using Visit = std::function<void(int, int, std::span<const glm::vec4>)>;
+  RowPyramid(int width, int height, const Visit& visit) : visit_(visit) {
+    levels_.push_back({width, height, {}, {}, 0});
+    while (levels_.back().width > 1 || levels_.back().height > 1)
+      levels_.push_back({std::max(1, levels_.back().width / 2), std::max(1, levels_.back().height / 2), {}, {}, 0});
+  }
+
+  void push(size_t k, int y, std::vector<glm::vec4>& row) {
+    visit_(int(k), y, row);
+    if (k + 1 == levels_.size()) return;
+    Level& fine = levels_[k];
+    Level& coarse = levels_[k + 1];
+    std::swap(fine.before, fine.last);
+    std::swap(fine.last, row);
+    while (coarse.done < coarse.height) {
+      const Taps v = taps(coarse.done, coarse.height, fine.height);
+      if (v.second > y) break;
+      std::vector<glm::vec4> made = mixed(v.first == y ? fine.last : fine.before, fine.last, v.share, fine, coarse);
+      push(k + 1, coarse.done++, made);
     }
   }
-  return coarse;
+
+ private:
+  struct Level {
+    int width, height;
+    std::vector<glm::vec4> before, last;  // rows
+    int done;                             // rows made
+  };
+
+  static std::vector<glm::vec4> mixed(const std::vector<glm::vec4>& a, const std::vector<glm::vec4>& b, float share,
+                                      const Level& fine, const Level& coarse) {
+    std::vector<glm::vec4> row;
+    row.reserve(size_t(coarse.width));
+    for (int x = 0; x < coarse.width; ++x) {
+      const Taps u = taps(x, coarse.width, fine.width);
+      row.push_back(glm::mix(glm::mix(a[size_t(u.first)], a[size_t(u.second)], u.share),
+                             glm::mix(b[size_t(u.first)], b[size_t(u.second)], u.share), share));
+    }
+    return row;
+  }
+
+  const Visit& visit_;
+  std::vector<Level> levels_;
+};
+
+MipLevel empty_level(const TextureImage& image, int level) {
+  MipLevel l{std::max(image.width >> level, 1), std::max(image.height >> level, 1), {}};
+  l.texels.reserve(size_t(l.width) * size_t(l.height));
+  return l;
 }
 
 }  // namespace
 
-std::vector<MipLevel> mip_chain(const TextureImage& image, bool srgb) {
-  MipLevel fine{image.width, image.height, {}};
-  fine.texels.reserve(image.rgba.size() / 4);
-  for (size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
-    glm::vec4 t(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], image.rgba[i + 3]);
-    t /= 255.0f;
-    if (srgb) t = {srgb_decode(t.x), srgb_decode(t.y), srgb_decode(t.z), t.w};
-    fine.texels.push_back(t);
+int mip_count(const TextureImage& image) {
+  int count = 1;
+  for (int edge = std::max(image.width, image.height); edge > 1; edge /= 2) ++count;
+  return count;
+}
+
+void visit_mip_rows(const TextureImage& image, bool srgb, const RowPyramid::Visit& visit) {
+  RowPyramid pyramid(image.width, image.height, visit);
+  std::vector<glm::vec4> row;
+  for (int y = 0; y < image.height; ++y) {
+    row.clear();
+    const std::uint8_t* const texels = image.rgba.data() + 4 * size_t(y) * size_t(image.width);
+    for (int x = 0; x < image.width; ++x) row.push_back(decoded_texel(texels + 4 * size_t(x), srgb));
+    pyramid.push(0, y, row);
   }
-  std::vector<MipLevel> chain{std::move(fine)};
-  while (chain.back().width > 1 || chain.back().height > 1) chain.push_back(coarser(chain.back()));
+}
+
+std::vector<MipLevel> mip_chain(const TextureImage& image, bool srgb) {
+  std::vector<MipLevel> chain;
+  for (int level = 0; level < mip_count(image); ++level) chain.push_back(empty_level(image, level));
+  visit_mip_rows(image, srgb, [&](int level, int, std::span<const glm::vec4> row) {
+    auto& texels = chain[size_t(level)].texels;
+    texels.insert(texels.end(), row.begin(), row.end());
+  });
   return chain;
 }
 
@@ -59,15 +111,30 @@ Mipmaps::Mipmaps(const Scene& scene) : scene_(scene) {
 void Mipmaps::prepare(int texture, bool srgb) {
   const auto image = size_t(scene_.textures[size_t(texture)].image);
   Chain& chain = chains_[srgb ? 1 : 0][image];
-  if (chain.empty()) chain = mip_chain(scene_.images[image], srgb);
+  if (!chain.empty()) return;
+  for (int level = 1; level < mip_count(scene_.images[image]); ++level)
+    chain.push_back(empty_level(scene_.images[image], level));
+  visit_mip_rows(scene_.images[image], srgb, [&](int level, int, std::span<const glm::vec4> row) {
+    if (level == 0) return;
+    auto& texels = chain[size_t(level - 1)].texels;
+    texels.insert(texels.end(), row.begin(), row.end());
+  });
 }
 
 glm::vec4 Mipmaps::sample(int texture, glm::vec2 uv, float lod, bool srgb) const {
   const Texture& t = scene_.textures[size_t(texture)];
   const Chain& levels = chains_[srgb ? 1 : 0][size_t(t.image)];
   const glm::vec2 at = wrapped(uv, t.sampler);
+  const TextureImage& image = scene_.images[size_t(t.image)];
   const auto level = [&](int k, bool nearest) {
-    const MipLevel& l = levels[size_t(k)];
+    if (k == 0) {
+      const std::uint8_t* const bytes = image.rgba.data();
+      const auto width = size_t(image.width);
+      return filter_texels(t.sampler, {image.width, image.height}, at, nearest, [&](int x, int y) {
+        return decoded_texel(bytes + 4 * (size_t(y) * width + size_t(x)), srgb);
+      });
+    }
+    const MipLevel& l = levels[size_t(k - 1)];
     const glm::vec4* const texels = l.texels.data();
     return filter_texels(t.sampler, {l.width, l.height}, at, nearest,
                          [&](int x, int y) { return texels[size_t(y) * size_t(l.width) + size_t(x)]; });
@@ -75,7 +142,7 @@ glm::vec4 Mipmaps::sample(int texture, glm::vec2 uv, float lod, bool srgb) const
   if (!(lod > 0.0f)) return level(0, t.sampler.magnify_nearest);
   const bool nearest = t.sampler.minify_nearest;
   if (!t.sampler.mipmap) return level(0, nearest);
-  const int coarsest = int(levels.size()) - 1;
+  const int coarsest = int(levels.size());
   if (t.sampler.mipmap_nearest) return level(std::clamp(int(std::ceil(lod + 0.5f)) - 1, 0, coarsest), nearest);
   const float clamped = std::min(lod, float(coarsest));
   const int first = std::max(std::min(int(clamped), coarsest - 1), 0);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/camera.h"
+#include "core/shared_bytes.h"
 
 namespace volgi {
 
@@ -19,7 +20,7 @@ class Sky;
 struct TextureImage {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgba;
+  SharedBytes rgba;
 };
 
 enum class Wrap { repeat, mirrored_repeat, clamp_to_edge };

@@ -11,23 +11,6 @@
 namespace volgi {
 namespace {
 
-const std::array<float, 256>& decoded_srgb() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> t{};
-    for (size_t i = 0; i < t.size(); ++i) t[i] = srgb_decode(float(i) / 255.0f);
-    return t;
-  }();
-  return table;
-}
-
-glm::vec4 texel(const TextureImage& image, int x, int y, bool srgb) {
-  const std::uint8_t* p = &image.rgba[4 * (size_t(y) * size_t(image.width) + size_t(x))];
-  const float alpha = float(p[3]) / 255.0f;
-  if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
-  const auto& decode = decoded_srgb();
-  return {decode[p[0]], decode[p[1]], decode[p[2]], alpha};
-}
-
 template <typename T>
 T interpolate(const std::vector<T>& values, glm::uvec3 corners, glm::vec3 weights) {
   return weights.x * values[corners.x] + weights.y * values[corners.y] + weights.z * values[corners.z];
@@ -84,7 +67,7 @@ glm::vec4 texture_extreme(const Scene& scene, const TextureUse& use, bool srgb, 
     std::uint8_t& e = extreme[i % 4];
     e = largest ? std::max(e, image.rgba[i]) : std::min(e, image.rgba[i]);
   }
-  return texel(TextureImage{1, 1, {extreme.begin(), extreme.end()}}, 0, 0, srgb);
+  return decoded_texel(extreme.data(), srgb);
 }
 
 }  // namespace
@@ -98,8 +81,10 @@ shared::Reflectance reflectance_of(const Material& material, glm::vec3 base, flo
 glm::vec4 sample_texture(const Scene& scene, int texture, glm::vec2 uv, bool srgb) {
   const Texture& t = scene.textures[size_t(texture)];
   const TextureImage& image = scene.images[size_t(t.image)];
+  const std::uint8_t* const texels = image.rgba.data();
+  const auto width = size_t(image.width);
   return filter_texels(t.sampler, {image.width, image.height}, wrapped(uv, t.sampler), t.sampler.magnify_nearest,
-                       [&](int x, int y) { return texel(image, x, y, srgb); });
+                       [&](int x, int y) { return decoded_texel(texels + 4 * (size_t(y) * width + size_t(x)), srgb); });
 }
 
 SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t triangle, float u, float v) {

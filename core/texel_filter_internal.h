@@ -1,9 +1,11 @@
 #pragma once
 // How a texture's texels become a value at a coordinate; for surface.cpp and mipmaps.cpp.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 
+#include "core/image.h"
 #include "core/scene.h"
 
 namespace volgi {
@@ -12,6 +14,17 @@ namespace volgi {
 inline int floor_to_int(float x) {
   const int toward_zero = int(x);
   return toward_zero - int(float(toward_zero) > x);
+}
+
+/// Linear RGBA of four bytes; `srgb` decodes RGB.
+inline glm::vec4 decoded_texel(const std::uint8_t* p, bool srgb) {
+  static const std::array<float, 256> decode = [] {
+    std::array<float, 256> t{};
+    for (size_t i = 0; i < t.size(); ++i) t[i] = srgb_decode(float(i) / 255.0f);
+    return t;
+  }();
+  if (!srgb) return glm::vec4(p[0], p[1], p[2], p[3]) / 255.0f;
+  return {decode[p[0]], decode[p[1]], decode[p[2]], float(p[3]) / 255.0f};
 }
 
 /// Coordinate in [0,1] of one period, so that huge ones cannot overflow an int. NaN becomes 0.

@@ -90,7 +90,7 @@ void add(Hash& hash, const Texture& texture) {
 void add(Hash& hash, const TextureImage& image) {
   hash.add(image.width);
   hash.add(image.height);
-  hash.add(image.rgba);
+  hash.add(image.rgba.bytes());
 }
 
 void add(Hash& hash, const Light& light) {

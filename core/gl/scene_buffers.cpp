@@ -93,16 +93,22 @@ GLenum gl_min_filter(const Sampler& s) {
 
 /// Linear light in 16 bits, levels of our own (core/mipmaps.h).
 Texture upload_texture(const TextureImage& image, const Sampler& sampler, bool srgb) {
-  std::vector<MipLevel> chain = mip_chain(image, srgb);
-  if (!sampler.mipmap) chain.resize(1);
-  Texture t = Texture::make_2d(GL_RGBA16, image.width, image.height, int(chain.size()));
-  std::vector<glm::u16vec4> texels;
-  for (size_t level = 0; level < chain.size(); ++level) {
-    texels.clear();
-    for (const glm::vec4& v : chain[level].texels) texels.emplace_back(v * 65535.0f + 0.5f);
-    glTextureSubImage2D(t.id(), GLint(level), 0, 0, chain[level].width, chain[level].height, GL_RGBA, GL_UNSIGNED_SHORT,
-                        texels.data());
-  }
+  const int levels = sampler.mipmap ? mip_count(image) : 1;
+  Texture t = Texture::make_2d(GL_RGBA16, image.width, image.height, levels);
+  // Rows are handed over in bands: a large texture is never there as floats.
+  constexpr size_t band_texels = size_t(1) << 16;
+  std::vector<std::vector<glm::u16vec4>> bands(static_cast<size_t>(levels));
+  visit_mip_rows(image, srgb, [&](int level, int y, std::span<const glm::vec4> row) {
+    if (level >= levels) return;
+    std::vector<glm::u16vec4>& band = bands[size_t(level)];
+    for (const glm::vec4& v : row) band.emplace_back(v * 65535.0f + 0.5f);
+    const int height = std::max(image.height >> level, 1);
+    if (band.size() < band_texels && y + 1 < height) return;
+    const auto rows = GLsizei(band.size() / row.size());
+    glTextureSubImage2D(t.id(), GLint(level), 0, y + 1 - rows, GLsizei(row.size()), rows, GL_RGBA, GL_UNSIGNED_SHORT,
+                        band.data());
+    band.clear();
+  });
   t.filter(gl_min_filter(sampler), sampler.magnify_nearest ? GL_NEAREST : GL_LINEAR);
   t.wrap(gl_wrap(sampler.wrap_s), gl_wrap(sampler.wrap_t));
   return t;

@@ -107,7 +107,7 @@ TextureImage decode_webp(const Document& document, Bytes bytes, const std::strin
     refuse(document.path, fmt::format("{} is no WebP that can be read", name));
   check_size(document, width, height, name);
   TextureImage image{width, height, std::vector<std::uint8_t>(size_t(width) * size_t(height) * 4)};
-  if (WebPDecodeRGBAInto(bytes.data, bytes.size, image.rgba.data(), image.rgba.size(), 4 * width) == nullptr)
+  if (WebPDecodeRGBAInto(bytes.data, bytes.size, image.rgba.edit().data(), image.rgba.size(), 4 * width) == nullptr)
     refuse(document.path, fmt::format("{} cannot be decoded", name));
   return image;
 }
@@ -128,7 +128,7 @@ TextureImage decode_image(const Document& document, size_t index) {
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) refuse(document.path, fmt::format("{} cannot be decoded: {}", name, stbi_failure_reason()));
-  return {width, height, {pixels.get(), pixels.get() + size_t(width) * size_t(height) * 4}};
+  return {width, height, SharedBytes::Bytes(pixels.get(), pixels.get() + size_t(width) * size_t(height) * 4)};
 }
 
 TextureTable::TextureTable(const Document& document, Materials& out)

@@ -46,6 +46,7 @@ TextureImage glass_image(const TextureImage* base, const TextureImage* passes_te
   const TextureImage& like = base != nullptr ? *base : *passes_texture;
   TextureImage glass{like.width, like.height, std::vector<std::uint8_t>(like.rgba.size())};
   const auto byte = [](float v) { return std::uint8_t(std::clamp(v * 255.0f + 0.5f, 0.0f, 255.0f)); };
+  std::vector<std::uint8_t>& texels = glass.rgba.edit();
   constexpr std::uint8_t white[4] = {255, 255, 255, 255};
   for (int y = 0; y < like.height; ++y) {
     for (int x = 0; x < like.width; ++x) {
@@ -56,7 +57,7 @@ TextureImage glass_image(const TextureImage* base, const TextureImage* passes_te
       const float coverage =
           material.alpha_mode == AlphaMode::opaque ? 1.0f : material.base_color_factor.a * float(in[3]) / 255.0f;
       const Covered covered = covered_by(coverage, passes * red, color * glm::vec3(material.base_color_factor));
-      std::uint8_t* out = &glass.rgba[4 * (size_t(y) * size_t(like.width) + size_t(x))];
+      std::uint8_t* out = &texels[4 * (size_t(y) * size_t(like.width) + size_t(x))];
       for (int c = 0; c < 3; ++c) out[c] = byte(srgb_encode(color[c] * covered.reflects));
       out[3] = byte(covered.stops);
     }

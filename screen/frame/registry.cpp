@@ -147,6 +147,7 @@ std::string recipes_that_carry(LightPaths paths) {
 void apply_recipe(const std::string& name, FrameOptions& options) {
   const Recipe& recipe = find_recipe(name);
   options.recipe = recipe.name;
+  options.of<LightChoice>() = {};  // of the recipe alone: no parameter, which could be kept from another one
   if (recipe.preset != nullptr) recipe.preset(options.settings);
 }
 

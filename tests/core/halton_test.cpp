@@ -144,7 +144,7 @@ TEST(EmitterPoints, TexturesAndCoverageCount) {
   TextureImage image{16, 16, std::vector<std::uint8_t>(16 * 16 * 4, 0)};
   for (size_t y = 0; y < 16; ++y) {
     for (size_t x = 0; x < 16; ++x) {
-      std::uint8_t* p = &image.rgba[4 * (16 * y + x)];
+      std::uint8_t* p = &image.rgba.edit()[4 * (16 * y + x)];
       p[0] = x < 4 ? 255 : 0;  // a quarter of the rectangle
       p[1] = 255;
       p[3] = 255;

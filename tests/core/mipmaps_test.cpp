@@ -12,10 +12,10 @@ TextureImage ramp(int width, int height) {
   TextureImage image{width, height, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      image.rgba.push_back(std::uint8_t(255 * (2 * x + 1) / (2 * width)));
-      image.rgba.push_back(std::uint8_t(255 * (2 * y + 1) / (2 * height)));
-      image.rgba.push_back((x + y) % 2 == 0 ? 255 : 0);
-      image.rgba.push_back(255);
+      image.rgba.edit().push_back(std::uint8_t(255 * (2 * x + 1) / (2 * width)));
+      image.rgba.edit().push_back(std::uint8_t(255 * (2 * y + 1) / (2 * height)));
+      image.rgba.edit().push_back((x + y) % 2 == 0 ? 255 : 0);
+      image.rgba.edit().push_back(255);
     }
   }
   return image;

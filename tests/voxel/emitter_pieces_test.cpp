@@ -95,7 +95,7 @@ TEST(EmitterPieces, TexturedEmitterSendsTheMean) {
   TextureImage image{8, 8, {}};
   for (int i = 0; i < 64; ++i) {
     const std::uint8_t v = (i % 8) < 3 ? 255 : 0;
-    image.rgba.insert(image.rgba.end(), {v, v, v, 255});
+    image.rgba.edit().insert(image.rgba.edit().end(), {v, v, v, 255});
   }
   scene.images.push_back(image);
   scene.textures.push_back({0, {}});

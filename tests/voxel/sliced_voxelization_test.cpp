@@ -185,7 +185,8 @@ TEST_F(SlicedVoxels, MaskCuts) {
   EXPECT_EQ(voxelize(context(), scene, unit_grid(8)).sides.size(), 0u);
   // A texture whose left half is cut away.
   TextureImage image{8, 1, {}};
-  for (int i = 0; i < 8; ++i) image.rgba.insert(image.rgba.end(), {255, 255, 255, std::uint8_t(i < 4 ? 0 : 255)});
+  for (int i = 0; i < 8; ++i)
+    image.rgba.edit().insert(image.rgba.edit().end(), {255, 255, 255, std::uint8_t(i < 4 ? 0 : 255)});
   scene.images.push_back(image);
   scene.textures.push_back({0, {Wrap::clamp_to_edge, Wrap::clamp_to_edge, true, true, false, false}});
   scene.materials[0].base_color.texture = 0;
@@ -201,7 +202,8 @@ TEST_F(SlicedVoxels, TexturedWallHasTheMeanOfItsTexture) {
   TextureImage image{64, 64, {}};
   std::uint32_t state = 1;
   const auto random = [&] { return std::uint8_t((state = state * 1664525u + 1013904223u) >> 24); };
-  for (int i = 0; i < 64 * 64; ++i) image.rgba.insert(image.rgba.end(), {random(), random(), random(), 255});
+  for (int i = 0; i < 64 * 64; ++i)
+    image.rgba.edit().insert(image.rgba.edit().end(), {random(), random(), random(), 255});
   scene.images.push_back(image);
   scene.textures.push_back({0, {}});
   scene.materials[0].base_color.texture = 0;

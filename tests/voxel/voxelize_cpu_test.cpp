@@ -151,7 +151,8 @@ TEST(VoxelizeCpu, MaskCuts) {
   // A texture whose left half is cut away: at 8 cells between faces, at 9 through the middle of a row of them, of whose
   // nine lines six or three are left.
   TextureImage image{8, 1, {}};
-  for (int i = 0; i < 8; ++i) image.rgba.insert(image.rgba.end(), {255, 255, 255, std::uint8_t(i < 4 ? 0 : 255)});
+  for (int i = 0; i < 8; ++i)
+    image.rgba.edit().insert(image.rgba.edit().end(), {255, 255, 255, std::uint8_t(i < 4 ? 0 : 255)});
   scene.images.push_back(image);
   scene.textures.push_back({0, {Wrap::clamp_to_edge, Wrap::clamp_to_edge, true, true, false, false}});
   scene.materials[0].base_color.texture = 0;

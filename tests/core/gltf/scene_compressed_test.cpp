@@ -271,7 +271,7 @@ TEST_F(WebP, AsPng) {
   writer.root["extensionsUsed"] = writer.root["extensionsRequired"] = {"EXT_texture_webp"};
   const Scene scene = load_scene(writer.save_glb(folder / "webp.glb"));
   ASSERT_EQ(scene.images.size(), 1u);
-  EXPECT_EQ(scene.images[0].rgba, rgba);
+  EXPECT_EQ(scene.images[0].rgba.bytes(), rgba);
   survive(1000);
 }
 

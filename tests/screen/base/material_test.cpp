@@ -17,7 +17,7 @@ TextureImage noise_image(int width, int height) {
   std::uint32_t state = 1;
   for (int i = 0; i < 4 * width * height; ++i) {
     state = state * 1664525u + 1013904223u;
-    image.rgba.push_back(std::uint8_t(state >> 24));
+    image.rgba.edit().push_back(std::uint8_t(state >> 24));
   }
   return image;
 }
@@ -96,7 +96,7 @@ TEST_F(Material, MaskCutsRasterAndShadow) {
   TextureImage checker{4, 4, {}};
   for (int i = 0; i < 16; ++i) {
     for (const int value : {255, 255, 255, (i + i / 4) % 2 == 0 ? 255 : 90})
-      checker.rgba.push_back(std::uint8_t(value));
+      checker.rgba.edit().push_back(std::uint8_t(value));
   }
   Sampler nearest;
   nearest.magnify_nearest = nearest.minify_nearest = true;

@@ -121,6 +121,19 @@ TEST(Plan, EveryRecipeAddsUpWhateverIsAskedFor) {
   }
 }
 
+/// From one recipe to another, with what the first one's name stood for.
+TEST(Plan, RecipesAfterOneAnother) {
+  for (const Recipe& before : recipes()) {
+    for (const Recipe& after : recipes()) {
+      FrameOptions o;
+      apply_recipe(before.name, o);
+      if (std::string(before.name) == "lpv" || std::string(after.name) == "lpv") continue;  // its scheme stays set
+      apply_recipe(after.name, o);
+      EXPECT_NO_THROW(plan_picture(after, o, LightPaths::all())) << before.name << " to " << after.name;
+    }
+  }
+}
+
 TEST(Plan, ThePapersSchemesCannotShowDirectLightOfEmissionAlone) {
   FrameOptions o;
   apply_recipe("lpv", o);

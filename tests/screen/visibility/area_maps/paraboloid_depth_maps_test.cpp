@@ -186,7 +186,7 @@ TEST_F(ParaboloidDepthMaps, CutOutsAreHolesAndGlassIsCoverage) {
     const int clear_alpha = mode == AlphaMode::mask ? 0 : 102;  // 0.4
     for (int i = 0; i < 16; ++i) {
       const bool hole = i % 4 >= 2;
-      image.rgba.insert(image.rgba.end(), {255, 255, 255, std::uint8_t(hole ? clear_alpha : 255)});
+      image.rgba.edit().insert(image.rgba.edit().end(), {255, 255, 255, std::uint8_t(hole ? clear_alpha : 255)});
     }
     scene.images.push_back(image);
     scene.textures.push_back({0, {}});
