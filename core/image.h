@@ -25,11 +25,13 @@ struct Channel {
   std::vector<float> values;  // width * height
 };
 
-/// All channels of a (single-part) EXR file.
+/// All channels of an EXR file; of several parts those of the first one's size, the others' channels named
+/// PART.CHANNEL.
 struct ChannelImage {
   int width = 0;
   int height = 0;
   std::vector<Channel> channels;
+  glm::ivec2 origin{0};  // of the upper left pixel on the picture (data window against display window)
 
   const Channel* find(std::string_view name) const;
   /// Three channels PREFIX + "R","G","B" (or "X","Y","Z"), e.g. prefix "" or "direct." or "noise.".
@@ -43,6 +45,10 @@ struct ChannelImage {
 ChannelImage read_exr(const std::filesystem::path& path);
 /// Colour of an EXR: R,G,B, or a layer that ends in "Combined.R" etc. (Blender's multilayer files).
 Image read_exr_rgb(const std::filesystem::path& path);
+Image colors_of(const ChannelImage& channels, const std::filesystem::path& path);  // as read_exr_rgb()
+
+/// A PNG's colours in linear light, as if its bytes were sRGB's. @throws Error(bad_input) naming the file.
+Image read_png(const std::filesystem::path& path);
 
 /// Writes float channels, or half with `half`, ZIP compressed, atomically.
 /// @throws Error(over_limit) when `half` and a finite value exceeds half's range (65504); Error(cannot_write).

@@ -3,6 +3,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
@@ -140,29 +141,52 @@ bool ChannelImage::rgb(std::string_view prefix, Image& out) const {
 void ChannelImage::add_rgb(std::string_view prefix, const Image& image) { add_three(*this, prefix, "RGB", image); }
 void ChannelImage::add_xyz(std::string_view prefix, const Image& image) { add_three(*this, prefix, "XYZ", image); }
 
+namespace {
+
+/// Adds the channels of a part.
+void read_part(const std::filesystem::path& path, Imf::MultiPartInputFile& file, int part, const std::string& prefix,
+               ChannelImage& image) {
+  Imf::InputPart in(file, part);
+  check_header(path, in.header());
+  const Imath::Box2i window = in.header().dataWindow();
+  const size_t first = image.channels.size();
+  for (auto c = in.header().channels().begin(); c != in.header().channels().end(); ++c) {
+    Channel& channel = image.channels.emplace_back();
+    channel.name = prefix + c.name();
+    channel.values.resize(size_t(image.width) * size_t(image.height));
+  }
+  Imf::FrameBuffer frame;
+  size_t k = first;
+  for (auto c = in.header().channels().begin(); c != in.header().channels().end(); ++c, ++k)
+    frame.insert(c.name(), slice_of(Imf::FLOAT, image.channels[k].values.data(), sizeof(float), window));
+  in.setFrameBuffer(frame);
+  in.readPixels(window.min.y, window.max.y);
+}
+
+}  // namespace
+
 ChannelImage read_exr(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) refuse(path, "there is no such file");
   try {
     if (!Imf::isOpenExrFile(path.c_str())) refuse(path, "not an OpenEXR file");
-    if (Imf::MultiPartInputFile(path.c_str()).parts() > 1) refuse(path, "multi-part EXR files are not supported");
-    Imf::InputFile file(path.c_str());
-    check_header(path, file.header());
-    const Imath::Box2i window = file.header().dataWindow();
-
+    Imf::MultiPartInputFile file(path.c_str());
+    constexpr int most_parts = 1024;
+    if (file.parts() < 1 || file.parts() > most_parts) refuse(path, fmt::format("an EXR of {} parts", file.parts()));
+    const Imf::Header& header = file.header(0);
+    check_header(path, header);
+    const Imath::Box2i window = header.dataWindow();
     ChannelImage image;
     image.width = window.max.x - window.min.x + 1;
     image.height = window.max.y - window.min.y + 1;
-    image.channels.reserve(channel_count(file.header().channels()));
-    Imf::FrameBuffer frame;
-    for (auto c = file.header().channels().begin(); c != file.header().channels().end(); ++c) {
-      Channel& channel = image.channels.emplace_back();
-      channel.name = c.name();
-      channel.values.resize(size_t(image.width) * size_t(image.height));
-      frame.insert(c.name(), slice_of(Imf::FLOAT, channel.values.data(), sizeof(float), window));
+    image.origin = {window.min.x - header.displayWindow().min.x, window.min.y - header.displayWindow().min.y};
+    for (int part = 0; part < file.parts(); ++part) {
+      const Imf::Header& own = file.header(part);
+      if (part > 0 && own.hasType() && Imf::isDeepData(own.type())) continue;
+      if (own.dataWindow() != window) continue;
+      const bool named = part > 0 && own.hasName() && !own.name().empty();
+      read_part(path, file, part, named ? own.name() + "." : std::string(), image);
     }
-    file.setFrameBuffer(frame);
-    file.readPixels(window.min.y, window.max.y);
     return image;
   } catch (const Error&) {
     throw;
@@ -171,10 +195,12 @@ ChannelImage read_exr(const std::filesystem::path& path) {
   }
 }
 
-Image read_exr_rgb(const std::filesystem::path& path) {
-  const ChannelImage channels = read_exr(path);
+Image read_exr_rgb(const std::filesystem::path& path) { return colors_of(read_exr(path), path); }
+
+Image colors_of(const ChannelImage& channels, const std::filesystem::path& path) {
   Image image;
   if (channels.rgb("", image)) return image;
+  // Blender's multilayer files call them ViewLayer.Combined.R; a part of its own ViewLayer.Combined and R.
   constexpr std::string_view red = "Combined.R";
   for (const Channel& channel : channels.channels) {
     const std::string_view name = channel.name;

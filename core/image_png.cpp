@@ -1,7 +1,10 @@
+#include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <memory>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -48,6 +51,25 @@ void write_png(const std::filesystem::path& path, const Image& image, float expo
 
 void write_png_display(const std::filesystem::path& path, const Image& display) {
   write_png_as(path, display, [](glm::vec3 value) { return value; });
+}
+
+Image read_png(const std::filesystem::path& path) {
+  constexpr int largest_edge = 32768;
+  int width = 0, height = 0, channels = 0;
+  std::array<unsigned char, 8> head{};
+  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head.data()), head.size());
+  constexpr std::array<unsigned char, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  const bool known = head == png && stbi_info(path.c_str(), &width, &height, &channels) != 0;
+  if (!known || width < 1 || height < 1 || width > largest_edge || height > largest_edge)
+    throw Error(ExitCode::bad_input, path.string() + ": no PNG that can be read");
+  const std::unique_ptr<stbi_uc, void (*)(void*)> bytes(stbi_load(path.c_str(), &width, &height, &channels, 3),
+                                                        stbi_image_free);
+  if (!bytes) throw Error(ExitCode::bad_input, path.string() + ": cannot be decoded");
+  Image image(width, height);
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) image.pixels[i][int(c)] = srgb_decode(float(bytes.get()[3 * i + c]) / 255.0f);
+  }
+  return image;
 }
 
 }  // namespace volgi

@@ -127,22 +127,92 @@ void require_finite(const Image& image, const fs::path& path, std::string_view w
 
 }  // namespace
 
+namespace {
+
+bool is_png(const fs::path& path) { return path.extension() == ".png" || path.extension() == ".PNG"; }
+
+Image cropped(const Image& image, glm::ivec2 from, glm::ivec2 size) {
+  Image out(size.x, size.y);
+  for (int y = 0; y < size.y; ++y) {
+    for (int x = 0; x < size.x; ++x) out.at(x, y) = image.at(from.x + x, from.y + y);
+  }
+  return out;
+}
+
+void crop(std::vector<float>& plane, int width, glm::ivec2 from, glm::ivec2 size) {
+  if (plane.empty()) return;
+  std::vector<float> out;
+  out.reserve(size_t(size.x) * size_t(size.y));
+  for (int y = 0; y < size.y; ++y) {
+    const auto row = plane.begin() + (std::ptrdiff_t(from.y + y) * width + from.x);
+    out.insert(out.end(), row, row + size.x);
+  }
+  plane = std::move(out);
+}
+
+void crop(ReferenceFile& file, glm::ivec2 from, glm::ivec2 size) {
+  const int width = file.color.width;
+  if (file.layers) {
+    RegionLayers& l = *file.layers;
+    for (Image* image : {&l.position, &l.normal, &l.direct, &l.direct_noise}) {
+      if (!image->pixels.empty()) *image = cropped(*image, from, size);
+    }
+    for (std::vector<float>* plane : {&l.id, &l.depth, &l.lit}) crop(*plane, width, from, size);
+  }
+  if (file.noise) file.noise = cropped(*file.noise, from, size);
+  file.color = cropped(file.color, from, size);
+}
+
+}  // namespace
+
+void crop_to_common(ReferenceFile& reference, TestPicture& test) {
+  const Image &a = reference.color, &b = test.color;
+  if (reference.origin == test.origin) return;
+  const glm::ivec2 low = glm::max(reference.origin, test.origin);
+  const glm::ivec2 high =
+      glm::min(reference.origin + glm::ivec2(a.width, a.height), test.origin + glm::ivec2(b.width, b.height));
+  const glm::ivec2 size = high - low;
+  if (size.x < 1 || size.y < 1) {
+    throw Error(
+        ExitCode::bad_input,
+        fmt::format("the picture shows {}x{} pixels from {},{} on and the reference {}x{} from {},{} on: none in "
+                    "common",
+                    b.width, b.height, test.origin.x, test.origin.y, a.width, a.height, reference.origin.x,
+                    reference.origin.y));
+  }
+  crop(reference, low - reference.origin, size);
+  test.color = cropped(test.color, low - test.origin, size);
+  reference.origin = test.origin = low;
+}
+
 ReferenceFile read_reference(const fs::path& path, AskedLight light) {
+  if (is_png(path)) {
+    if (light != AskedLight::full)
+      throw Error(ExitCode::bad_input, path.string() + ": a PNG has all light in one: compare --light full");
+    ReferenceFile reference{read_png(path), std::nullopt, std::nullopt};
+    reference.for_screen = true;
+    return reference;
+  }
   const ChannelImage image = read_exr(path);
   ReferenceFile reference = is_own_reference(image) ? from_own(image, path, light) : from_folder(path, light);
+  reference.origin = image.origin;
   require_finite(reference.color, path, "the reference");  // no figure would mean anything, and no limit would be over
   if (reference.noise) require_finite(*reference.noise, path, "the reference's noise");
   return reference;
 }
 
-Image read_test(const fs::path& path, AskedLight light) {
-  Image color = read_exr_rgb(path);
-  if (light == AskedLight::full) return color;
+TestPicture read_test(const fs::path& path, AskedLight light) {
+  if (is_png(path)) return {read_png(path), glm::ivec2(0), true};
   const ChannelImage image = read_exr(path);
+  TestPicture test{colors_of(image, path), image.origin};
   Image direct;
-  if (light == AskedLight::direct && image.rgb("left_out.direct.", direct)) return direct;
-  if (!image.rgb("direct.", direct)) return color;
-  return light == AskedLight::direct ? direct : difference(color, direct);
+  if (light == AskedLight::full) return test;
+  if (light == AskedLight::direct && image.rgb("left_out.direct.", direct)) {
+    test.color = std::move(direct);
+  } else if (image.rgb("direct.", direct)) {
+    test.color = light == AskedLight::direct ? direct : difference(test.color, direct);
+  }
+  return test;
 }
 
 }  // namespace volgi

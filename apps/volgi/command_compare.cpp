@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "core/log.h"
 #include "reference/error_map.h"
 #include "reference/fit_hint.h"
+#include "reference/flip.h"
 #include "reference/metrics.h"
 #include "reference/picture_files.h"
 
@@ -115,11 +117,12 @@ std::string cell(const std::optional<double>& value, int decimals) {
 }
 
 std::string table_head() {
-  return fmt::format("{:>8} {:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>8} {:>8} {:>7} {:>10}  {}\n", "ratio", "rmse%",
-                     "rmse%*", "relMSE", "relMSE*", "p95%", "blk%", "blkmax%", "scale", "ssim", "max|t-r|", "picture");
+  return fmt::format("{:>8} {:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>8} {:>8} {:>7} {:>7} {:>10}  {}\n", "ratio", "rmse%",
+                     "rmse%*", "relMSE", "relMSE*", "p95%", "blk%", "blkmax%", "scale", "ssim", "flip", "max|t-r|",
+                     "picture");
 }
 
-std::string table_row(const Metrics& m, const std::string& name) {
+std::string table_row(const Metrics& m, const std::optional<double>& flip, const std::string& name) {
   std::string row;
   if (m.pixels == 0)
     row = fmt::format("no pixel in the region  {}", name);
@@ -128,9 +131,10 @@ std::string table_row(const Metrics& m, const std::string& name) {
                       m.mean_absolute, m.max_absolute, name);
   else {
     const Metrics::Relative& r = *m.relative;
-    row = fmt::format("{:>8.4f} {:>8.2f} {:>8} {:>9.5f} {:>9} {:>7.2f} {:>7} {:>8} {:>8.4f} {:>7.4f} {:>10.4g}  {}",
-                      r.ratio, r.rmse_pct, cell(r.rmse_pct_denoised, 2), r.relmse, cell(r.relmse_denoised, 5),
-                      r.p95_percent, cell(r.blk_pct, 2), cell(r.blkmax_pct, 2), r.scale, r.ssim, m.max_absolute, name);
+    row = fmt::format(
+        "{:>8.4f} {:>8.2f} {:>8} {:>9.5f} {:>9} {:>7.2f} {:>7} {:>8} {:>8.4f} {:>7.4f} {:>7} {:>10.4g}  {}", r.ratio,
+        r.rmse_pct, cell(r.rmse_pct_denoised, 2), r.relmse, cell(r.relmse_denoised, 5), r.p95_percent,
+        cell(r.blk_pct, 2), cell(r.blkmax_pct, 2), r.scale, r.ssim, cell(flip, 4), m.max_absolute, name);
   }
   if (m.nonfinite + m.negative > 0) row += fmt::format("  [{} not finite, {} negative]", m.nonfinite, m.negative);
   return row + "\n";
@@ -161,27 +165,54 @@ void check_maps(const CompareOptions& options) {
   for (const std::filesystem::path& map : maps) check_writable(map);
 }
 
-Image test_picture(const std::filesystem::path& path, const CompareOptions& options, const Image& reference) {
+/// The reference as it is compared with one picture: where both are.
+struct Compared {
+  ReferenceFile reference;
+  TestPicture test;
+};
+
+Compared compared(const std::filesystem::path& path, const CompareOptions& options, const ReferenceFile& reference) {
   try {
-    return box_downsample(read_test(path, light_from_name(options.light)), reference.width, reference.height);
+    Compared both{reference, read_test(path, light_from_name(options.light))};
+    crop_to_common(both.reference, both.test);
+    both.test.color = box_downsample(both.test.color, both.reference.color.width, both.reference.color.height);
+    return both;
   } catch (const Error& error) {
     if (std::string(error.what()).find(path.string()) != std::string::npos) throw;
     throw Error(error.code(), fmt::format("{}: {}", path.string(), error.what()));
   }
 }
 
+/// FLIP's mean over the region; nothing where the reference is black, or a region is empty.
+std::optional<double> flip_mean(const Compared& both, const Mask& mask) {
+  if (std::none_of(mask.begin(), mask.end(), [](auto m) { return m != 0; })) return std::nullopt;
+  if (both.reference.for_screen && both.test.for_screen)
+    return flip_ldr(both.reference.color, both.test.color).mean(mask);
+  const std::optional<FlipMap> map = flip_hdr(both.reference.color, both.test.color);
+  return map ? std::optional<double>(map->mean(mask)) : std::nullopt;
+}
+
+void warn_of_screens(const Compared& both, const std::filesystem::path& path) {
+  if (both.reference.for_screen == both.test.for_screen) return;
+  warn_once(fmt::format("{}: a PNG against an EXR, which is not tone mapped: for a look alone", path.string()));
+}
+
 int compare(const CompareOptions& options) {
   if (options.energy) parse_range(*options.energy);
   check_maps(options);
-  const ReferenceFile reference = read_reference(options.reference, light_from_name(options.light));
-  const Region region = requested_region(options, reference);
-  const Mask everywhere(reference.color.pixels.size(), 1);
-  const Mask mask = reference.layers ? region_mask(region, *reference.layers) : everywhere;
-  const Mask hit = reference.layers ? region_mask(Region::hit, *reference.layers) : everywhere;
+  const ReferenceFile whole = read_reference(options.reference, light_from_name(options.light));
+  const Region region = requested_region(options, whole);
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string table, failures;
   for (const std::filesystem::path& path : options.tests) {
-    const Image test = test_picture(path, options, reference.color);
+    const Compared both = compared(path, options, whole);
+    const ReferenceFile& reference = both.reference;
+    const Image& test = both.test.color;
+    const Mask everywhere(reference.color.pixels.size(), 1);
+    const Mask mask = reference.layers ? region_mask(region, *reference.layers) : everywhere;
+    const Mask hit = reference.layers ? region_mask(Region::hit, *reference.layers) : everywhere;
+    warn_of_screens(both, path);
+    const std::optional<double> flip = flip_mean(both, mask);
     const Metrics m = measure(reference.color, test, reference.noise ? &*reference.noise : nullptr, mask);
     const std::vector<std::string> broken = broken_limits(options, m);
     for (const std::string& limit : broken) failures += fmt::format("volgi compare: {}: {}\n", path.string(), limit);
@@ -189,8 +220,9 @@ int compare(const CompareOptions& options) {
     json["light"] = options.light;
     json["region"] = std::string(name(region));
     json.update(to_json(m));
+    if (flip) json["flip"] = *flip;
     json["failed"] = broken;
-    table += table_row(m, path.string());
+    table += table_row(m, flip, path.string());
     if (const std::string_view change = fit_hint(reference.color, test, hit); !change.empty()) {
       json["hint"] = std::string(change);
       table += fmt::format("   hint: the picture fits much better when {}\n", change);
@@ -210,8 +242,9 @@ int compare(const CompareOptions& options) {
 
 constexpr const char* kFooter =
     R"(Figures: ratio mean(test)/mean(ref); rmse% of mean(ref); relMSE; p95% 95th percentile of the relative error;
-blk% RMS error of 16x16 block means; * with the reference's own noise taken out. A REF is an EXR of `volgi reference`,
-or DIR/full.exr with full_noise.exr, direct.exr and aov.exr beside it. Exit code 1 when a limit is broken, or a limit is
+blk% RMS error of 16x16 block means; flip what an eye tells apart, 0 to 1 (HDR-FLIP of EXRs, LDR-FLIP of PNGs, 67 pixels a
+degree); * with the reference's own noise taken out. A REF is an EXR of `volgi reference`,
+or DIR/full.exr with full_noise.exr, direct.exr and aov.exr beside it, or a PNG. Crops are compared where both are. Exit code 1 when a limit is broken, or a limit is
 given and a pixel is not finite; 3 when a pixel of REF is not.
 Regions: all; hit, where geometry is seen; noedge, hit without edges of geometry or of shadows; of noedge, shadow has no
 direct light and lit has, and no punctual light reaches shade.
