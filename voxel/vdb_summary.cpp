@@ -9,18 +9,53 @@
 namespace volgi {
 namespace {
 
+template <typename Value>
+bool is_finite(const Value& value) {
+  for (int c = 0; c < channel_count<Value>(); ++c) {
+    if (!std::isfinite(channel(value, c))) return false;
+  }
+  return true;
+}
+
+/// Another pass, so that large means do not eat small deviations.
+template <typename GridType>
+void add_deviations(const GridType& grid, double finite_cells, std::vector<ChannelRange>& ranges) {
+  std::vector<double> squares(ranges.size(), 0.0);
+  for (auto it = grid.cbeginValueOn(); it; ++it) {
+    if (!is_finite(*it)) continue;
+    for (size_t c = 0; c < ranges.size(); ++c) {
+      const double off = channel(*it, int(c)) - ranges[c].mean;
+      squares[c] += off * off * double(it.getVoxelCount());
+    }
+  }
+  for (size_t c = 0; c < ranges.size(); ++c) ranges[c].deviation = std::sqrt(squares[c] / finite_cells);
+}
+
+template <typename GridType>
+void count_values(const GridType& grid, const ChannelRange& range, int of_channel, std::vector<std::uint64_t>& counts) {
+  const double width = range.maximum - range.minimum;
+  for (auto it = grid.cbeginValueOn(); it; ++it) {
+    if (!is_finite(*it)) continue;
+    const double share = width > 0.0 ? (channel(*it, of_channel) - range.minimum) / width : 0.0;
+    counts[std::min(size_t(share * double(counts.size())), counts.size() - 1)] += it.getVoxelCount();
+  }
+}
+
 template <typename GridType>
 void add_ranges(const GridType& grid, GridSummary& summary) {
   constexpr int count = channel_count<typename GridType::ValueType>();
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<ChannelRange> ranges(size_t(count), ChannelRange{infinity, -infinity, 0.0});
+  std::vector<ChannelRange> ranges(size_t(count), ChannelRange{infinity, -infinity});
   double finite_cells = 0.0, lit_cells = 0.0, lit = 0.0;
   for (auto it = grid.cbeginValueOn(); it; ++it) {
     const auto cells = it.getVoxelCount();
-    bool finite = true;
-    for (int c = 0; c < count; ++c) finite = finite && std::isfinite(channel(*it, c));
-    if (!finite) {
+    if (!is_finite(*it)) {
       summary.not_finite += cells;
+      for (int c = 0; c < count; ++c) {
+        if (!std::isnan(channel(*it, c))) continue;
+        summary.not_a_number += cells;
+        break;
+      }
       continue;
     }
     finite_cells += double(cells);
@@ -39,6 +74,7 @@ void add_ranges(const GridType& grid, GridSummary& summary) {
   }
   if (finite_cells == 0.0) return;
   for (ChannelRange& range : ranges) range.mean /= finite_cells;
+  add_deviations(grid, finite_cells, ranges);
   if (count == 3 && lit_cells > 0.0) summary.lit_luminance = lit / lit_cells;
   summary.channels = std::move(ranges);
 }
@@ -77,6 +113,14 @@ GridSummary summarise(const openvdb::GridBase& grid) {
   s.active_share = double(s.active_cells) / (extent.x() * extent.y() * extent.z());
   grid.apply<NumberGrids>([&](const auto& typed) { add_ranges(typed, s); });
   return s;
+}
+
+std::vector<std::uint64_t> histogram(const openvdb::GridBase& grid, const GridSummary& summary, int channel, int bins) {
+  if (summary.channels.empty()) return {};
+  std::vector<std::uint64_t> counts(static_cast<size_t>(bins), 0);
+  grid.apply<NumberGrids>(
+      [&](const auto& typed) { count_values(typed, summary.channels[size_t(channel)], channel, counts); });
+  return counts;
 }
 
 std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further_metadata(const openvdb::MetaMap& metadata) {

@@ -30,6 +30,7 @@ struct ChannelRange {
   double minimum = 0.0;
   double maximum = 0.0;
   double mean = 0.0;
+  double deviation = 0.0;  // standard deviation
 };
 
 /// What a grid is and holds, as `volgi inspect` shows it.
@@ -42,6 +43,7 @@ struct GridSummary {
   std::uint64_t active_cells = 0;
   double active_share = 0.0;           // of the index box
   std::uint64_t not_finite = 0;        // active cells with a NaN or an infinity
+  std::uint64_t not_a_number = 0;      // those with a NaN
   std::vector<ChannelRange> channels;  // 1 or 3; empty for types without numbers and for grids without active cells
   double lit_luminance = 0.0;          // mean size of the luminance (Rec. 709) of colours where it is not 0
   std::uint64_t memory_bytes = 0;
@@ -52,6 +54,10 @@ inline constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};  // Rec. 709
 /// @param grid  any type; ranges are for scalars and 3-vectors. Index (i,j,k) is a cell's centre (cell_volumes.h).
 /// Cost: one pass over the active values, in the order of the tree, so that means do not depend on threads.
 GridSummary summarise(const openvdb::GridBase& grid);
+
+/// Finite active cells by the value of a channel, in `bins` equal steps from the channel's minimum to its maximum; all
+/// in the first where these are one. Of types without numbers nothing.
+std::vector<std::uint64_t> histogram(const openvdb::GridBase& grid, const GridSummary& summary, int channel, int bins);
 
 /// Metadata in the order of the keys; of a grid, without what summarise() says and OpenVDB's own statistics.
 std::vector<std::pair<std::string, openvdb::Metadata::ConstPtr>> further_metadata(const openvdb::MetaMap& metadata);

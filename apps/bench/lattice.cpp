@@ -7,6 +7,7 @@
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/yardstick.h"
 #include "core/error.h"
+#include "reference/flip.h"
 #include "screen/frame/registry.h"
 #include "screen/gather/strided/virtual_light_gather.h"
 #include "screen/lights/lattice/wave_lattice.h"
@@ -45,10 +46,13 @@ nlohmann::json measured(const Scene& scene, const gl::Context& context, const Ya
                         const FrameOptions& options, int frames) {
   RepeatedFrame picture(scene, context, options);
   picture.render_repeatedly(frames);
-  const Metrics::Relative m = yardstick.measure(picture.image());
+  const Image image = picture.image();
+  const Metrics::Relative m = yardstick.measure(image);
+  const std::optional<FlipMap> flip = flip_hdr(yardstick.reference().color, image);
   return {{"error_percent", m.rmse_pct_denoised.value_or(m.rmse_pct)},
           {"energy", m.ratio},
           {"ssim", m.ssim},
+          {"flip", flip ? flip->mean(Mask(image.pixels.size(), 1)) : 0.0},
           {"lights", picture.frame().report().number("vpls")},
           {"frame_ms", picture.frame_ms()},
           {"maps_ms", picture.passes_ms({screen::ImperfectMaps::name, screen::ParaboloidDepthMaps::name})},
@@ -56,9 +60,10 @@ nlohmann::json measured(const Scene& scene, const gl::Context& context, const Ya
 }
 
 std::string row_text(const nlohmann::json& r) {
-  return fmt::format("  {:<46} {:6.0f} lights {:7.1f} %  energy {:5.2f}  SSIM {:5.3f}  {:7.0f} ms\n",
+  return fmt::format("  {:<46} {:6.0f} lights {:7.1f} %  energy {:5.2f}  SSIM {:5.3f}  FLIP {:5.3f}  {:7.0f} ms\n",
                      r["what"].get<std::string>(), r["lights"].get<double>(), r["error_percent"].get<double>(),
-                     r["energy"].get<double>(), r["ssim"].get<double>(), r["frame_ms"].get<double>());
+                     r["energy"].get<double>(), r["ssim"].get<double>(), r["flip"].get<double>(),
+                     r["frame_ms"].get<double>());
 }
 
 struct Variant {

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -29,6 +31,8 @@ struct InspectCommand {
   std::filesystem::path out;
   bool sheet = false;
   bool json = false;
+  bool diagnose = false;
+  int bins = 0;  // of the histogram; 0: none
 
   int run() const;
   std::vector<openvdb::GridBase::Ptr> chosen(const VdbFile& vdb) const;
@@ -92,6 +96,7 @@ Json to_json(const GridSummary& s, const openvdb::MetaMap& metadata) {
   json["minimum"] = channels(s, &ChannelRange::minimum);
   json["maximum"] = channels(s, &ChannelRange::maximum);
   json["mean"] = channels(s, &ChannelRange::mean);
+  json["deviation"] = channels(s, &ChannelRange::deviation);
   json["memory_bytes"] = s.memory_bytes;
   json["metadata"] = to_json(metadata);
   return json;
@@ -136,9 +141,45 @@ std::string grid_text(const GridSummary& s, const openvdb::MetaMap& metadata) {
   text += fmt::format("  {:<12} {} cells, {:.2f} % of the box\n", "active", s.active_cells, 100.0 * s.active_share);
   if (!s.channels.empty())
     text += range_text(s, "minimum", &ChannelRange::minimum) + range_text(s, "maximum", &ChannelRange::maximum) +
-            range_text(s, "mean", &ChannelRange::mean);
+            range_text(s, "mean", &ChannelRange::mean) + range_text(s, "deviation", &ChannelRange::deviation);
   if (s.not_finite > 0) text += fmt::format("  {:<12} {} cells\n", "not finite", s.not_finite);
   return text + fmt::format("  {:<12} {}\n", "memory", bytes_text(double(s.memory_bytes))) + metadata_text(metadata);
+}
+
+/// One row a step: its lower end, how many cells, and a bar against the fullest; a column for each channel.
+std::string histogram_text(const openvdb::GridBase& grid, const GridSummary& s, int bins) {
+  std::string text;
+  for (size_t c = 0; c < s.channels.size(); ++c) {
+    const std::vector<std::uint64_t> counts = histogram(grid, s, int(c), bins);
+    const std::uint64_t most = std::max<std::uint64_t>(*std::max_element(counts.begin(), counts.end()), 1);
+    const ChannelRange& range = s.channels[c];
+    if (s.channels.size() > 1) text += fmt::format("  channel {}\n", c);
+    for (size_t k = 0; k < counts.size(); ++k) {
+      constexpr double widest = 40.0;
+      const double from = range.minimum + (range.maximum - range.minimum) * double(k) / double(bins);
+      text += fmt::format("  {:>12.5g} {:>10} {}\n", from, counts[k],
+                          std::string(size_t(std::ceil(widest * double(counts[k]) / double(most))), '#'));
+    }
+  }
+  return text;
+}
+
+Json histogram_json(const openvdb::GridBase& grid, const GridSummary& s, int bins) {
+  Json json = Json::array();
+  for (size_t c = 0; c < s.channels.size(); ++c) json.push_back(histogram(grid, s, int(c), bins));
+  return json;
+}
+
+/// Whether a grid's numbers are numbers: "fluence: OK", "fluence: FAILED, 3 cells are NaN, 1 is infinite".
+bool diagnose_grid(const GridSummary& s, std::string& text) {
+  const std::uint64_t infinite = s.not_finite - s.not_a_number;
+  if (s.not_finite == 0) {
+    text += fmt::format("{}: OK, {} active cells\n", printable(s.name), s.active_cells);
+    return true;
+  }
+  text += fmt::format("{}: FAILED, of {} active cells {} are NaN and {} infinite\n", printable(s.name), s.active_cells,
+                      s.not_a_number, infinite);
+  return false;
 }
 
 [[noreturn]] void usage(const std::string& message) { throw Error(ExitCode::usage, message); }
@@ -223,16 +264,31 @@ int InspectCommand::run() const {
   const VdbFile vdb = read_vdb(file);
   const auto grids = chosen(vdb);
   if (picture) write_picture(grids);
+  if (diagnose) {
+    bool good = true;
+    std::string text;
+    for (const auto& g : grids) good = diagnose_grid(summarise(*g), text) && good;
+    std::cout << text << (good ? "OK\n" : "FAILED\n");
+    return int(good ? ExitCode::done : ExitCode::comparison_failed);
+  }
   const auto size = std::filesystem::file_size(file);
   if (json) {
     Json all{{"file", file.string()}, {"bytes", size}, {"metadata", to_json(vdb.metadata)}, {"grids", Json::array()}};
-    for (const auto& g : grids) all["grids"].push_back(to_json(summarise(*g), *g));
+    for (const auto& g : grids) {
+      const GridSummary s = summarise(*g);
+      all["grids"].push_back(to_json(s, *g));
+      if (bins > 0) all["grids"].back()["histogram"] = histogram_json(*g, s, bins);
+    }
     // A file's texts need not be UTF-8.
     std::cout << all.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
   } else if (!picture) {
     std::string text = fmt::format("{}: {} grids, {}\n", file.string(), vdb.grids.size(), bytes_text(double(size)));
     text += metadata_text(vdb.metadata);
-    for (const auto& g : grids) text += grid_text(summarise(*g), *g);
+    for (const auto& g : grids) {
+      const GridSummary s = summarise(*g);
+      text += grid_text(s, *g);
+      if (bins > 0) text += histogram_text(*g, s, bins);
+    }
     std::cout << text;
   }
   return int(ExitCode::done);
@@ -254,7 +310,18 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
       ->type_name("X,Y,Z")
       ->needs(sheet);
   command->add_option("-o,--output", options->out, "picture to write, .png")->type_name("FILE");
-  command->add_flag("--json", options->json, "print JSON");
+  CLI::Option* json = command->add_flag("--json", options->json, "print JSON");
+  command->add_option("--histogram", options->bins, "counts of cells in so many equal steps of their values")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("BINS")
+      ->excludes(slice)
+      ->excludes(sheet);
+  command
+      ->add_flag("--diagnose", options->diagnose,
+                 "says OK or FAILED of every grid: exit code 1 where a cell is no number")
+      ->excludes(json)
+      ->excludes(slice)
+      ->excludes(sheet);
   command->footer(
       "Indices are cells, counted as in the file; places are in metres, units as the grids say.\n"
       "Example: volgi inspect out/cornell.vdb --grid fluence --slice z=16 -o out/fluence.png");

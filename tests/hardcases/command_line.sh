@@ -32,7 +32,7 @@ for command in "${commands[@]}"; do
   for file in text.glb truncated.glb header.glb empty.glb broken.gltf old.gltf missing.glb; do
     refuse 3 "$file" "$command" "$file" "${quick[@]}"
   done
-  refuse 3 brick.png "$command" texture.gltf "${quick[@]}"
+  refuse 3 brick.png "$command" texture.gltf --strict "${quick[@]}"
   refuse 6 /proc/none "$command" "$scene" -o /proc/none/out.exr --size 8x8
   refuse 6 none/ "$command" "$scene" -o none/out.exr --size 8x8
   refuse 6 text.glb/ "$command" "$scene" -o text.glb/out.exr --size 8x8

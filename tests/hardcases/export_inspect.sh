@@ -27,6 +27,10 @@ says 'wrote order2.vdb: 14 grids'
 must "$volgi" inspect a.vdb
 says '^occupancy \[1\]' '^emission \[W m\^-2\]' '^fluence \[W m\^-2\]' '^sh_1m1 \[W m\^-2 sr\^-1\]' 'scheme +ordinates' \
   'world box +-1,0,-1 ... 1,2,1 m' '16 x 16 x 16 cells of 0.125 m'
+must "$volgi" inspect a.vdb --diagnose
+says '^fluence: OK, [0-9]+ active cells' '^OK$'
+must "$volgi" inspect a.vdb --grid occupancy --histogram 4
+says 'deviation' '^ +[0-9.]+ +[0-9]+ #*$'
 must "$volgi" inspect a.vdb --grid albedo --json
 says '"name": "albedo"' '"unit": "1"' '"active_share"' '"maximum"' '"cell_size_m"'
 must "$volgi" inspect a.vdb --grid albedo --slice z=3 -o slice.png

@@ -312,6 +312,22 @@ TEST(VdbSummaryTest, ATileCountsAsItsCells) {
   EXPECT_EQ(s.channels.at(0).mean, 1025.0 / 513.0);
 }
 
+TEST(VdbSummaryTest, DeviationHistogramAndWhatIsNoNumber) {
+  openvdb::initialize();
+  auto grid = openvdb::FloatGrid::create();
+  auto values = grid->getAccessor();
+  for (int i = 0; i < 8; ++i) values.setValue({i, 0, 0}, float(i));  // 0 ... 7
+  values.setValue({8, 0, 0}, std::numeric_limits<float>::quiet_NaN());
+  values.setValue({9, 0, 0}, -std::numeric_limits<float>::infinity());
+  const GridSummary s = summarise(*grid);
+  EXPECT_EQ(s.not_finite, 2u);
+  EXPECT_EQ(s.not_a_number, 1u);
+  EXPECT_DOUBLE_EQ(s.channels.at(0).mean, 3.5);
+  EXPECT_NEAR(s.channels[0].deviation, std::sqrt(21.0 / 4.0), 1e-12);
+  EXPECT_EQ(histogram(*grid, s, 0, 4), (std::vector<std::uint64_t>{2, 2, 2, 2}));
+  EXPECT_EQ(histogram(*grid, s, 0, 7), (std::vector<std::uint64_t>{1, 1, 1, 1, 1, 1, 2}));
+}
+
 TEST(VdbSummaryTest, AnEmptyGridHasNoRange) {
   openvdb::initialize();
   const GridSummary s = summarise(*openvdb::FloatGrid::create(1.0f));
