@@ -119,12 +119,14 @@ struct Materials {
 };
 Materials read_materials(const Document& document);
 
-/// Scene textures made of a file's on demand: what no supported property uses is never decoded.
+/// Scene textures made of a file's: what no supported property uses is never decoded.
 class TextureTable {
  public:
   TextureTable(const Document& document, Materials& out);
   TextureUse use(const tinygltf::TextureInfo& info, const std::string& who);
-  const TextureImage& image_of(int texture) const;
+  const TextureImage& image_of(int texture);
+  /// Decodes what has been used, on all threads. Nothing is looked at before, but by image_of().
+  void decode();
   /// A texture of another image with the sampler of `like`.
   int add(TextureImage image, int like);
 
@@ -134,6 +136,7 @@ class TextureTable {
   const Document& document_;
   Materials& out_;
   std::vector<int> texture_of_file_, image_of_file_;
+  std::vector<int> encoded_;  // of out_.images: the file's, -1 where it is decoded
 };
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);

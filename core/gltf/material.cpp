@@ -190,6 +190,7 @@ Materials read_materials(const Document& document) {
     Material& material = out.materials.emplace_back(read_material(document, i, textures));
     out.uv_sets.push_back(take_uv_sets(document, element("material", i, material.name), material));
   }
+  textures.decode();
   if (needs_default_material(document)) {
     Material& of_gltf = out.materials.emplace_back();
     of_gltf.name = "default";

@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 #include <stb/stb_image.h>
+#include <tbb/parallel_for.h>
 #include <webp/decode.h>
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/gltf/gltf_internal.h"
+#include "core/progress.h"
 
 namespace volgi::gltf {
 namespace {
@@ -141,7 +145,8 @@ int TextureTable::image(int file_image, const std::string& who) {
   check_index(document_, file_image, document_.model.images.size(), who, "image");
   int& known = image_of_file_[size_t(file_image)];
   if (known < 0) {
-    out_.images.push_back(decode_image(document_, size_t(file_image)));
+    out_.images.emplace_back();
+    encoded_.push_back(file_image);
     known = int(out_.images.size()) - 1;
   }
   return known;
@@ -197,12 +202,33 @@ TextureUse TextureTable::use(const tinygltf::TextureInfo& info, const std::strin
   return use;
 }
 
-const TextureImage& TextureTable::image_of(int texture) const {
-  return out_.images[size_t(out_.textures[size_t(texture)].image)];
+const TextureImage& TextureTable::image_of(int texture) {
+  const auto image = size_t(out_.textures[size_t(texture)].image);
+  if (encoded_[image] >= 0) out_.images[image] = decode_image(document_, size_t(std::exchange(encoded_[image], -1)));
+  return out_.images[image];
+}
+
+void TextureTable::decode() {
+  std::vector<std::exception_ptr> refused(out_.images.size());
+  Progress progress("textures", out_.images.size());
+  tbb::parallel_for(size_t(0), out_.images.size(), [&](size_t i) {
+    if (encoded_[i] < 0) return;
+    try {
+      out_.images[i] = decode_image(document_, size_t(encoded_[i]));
+    } catch (...) {
+      refused[i] = std::current_exception();
+    }
+    progress.advance();
+  });
+  std::fill(encoded_.begin(), encoded_.end(), -1);
+  for (const std::exception_ptr& e : refused) {  // the first of the file, whichever came first
+    if (e) std::rethrow_exception(e);
+  }
 }
 
 int TextureTable::add(TextureImage image, int like) {
   out_.images.push_back(std::move(image));
+  encoded_.push_back(-1);
   out_.textures.push_back({int(out_.images.size()) - 1, out_.textures[size_t(like)].sampler});
   return int(out_.textures.size()) - 1;
 }
