@@ -19,6 +19,7 @@
 #include "propagation/ordinates.h"
 #include "propagation/volume_cpu.h"
 #include "volgi_version.h"
+#include "voxel/nvdb_file.h"
 #include "voxel/vdb_file.h"
 
 namespace volgi::app {
@@ -117,7 +118,9 @@ int ExportCommand::run() const {
   set_quiet(quiet);
   volume.limit_threads();
   VolumeOptions options = volume.volume_options();
-  if (out.extension() != ".vdb") throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .vdb");
+  const bool nano = out.extension() == ".nvdb";
+  if (!nano && out.extension() != ".vdb")
+    throw Error(ExitCode::usage, out.string() + ": -o needs a name that ends in .vdb, or .nvdb for NanoVDB");
   check_writable(out);
   Scene scene = load_scene(scene_path, time_s, file.reading);
   light.apply(scene);
@@ -141,7 +144,11 @@ int ExportCommand::run() const {
   grids.add_cells(computed.cells());
   if (has_radiance()) grids.add_radiance(computed.radiance());
   progress.advance();
-  write_vdb(out, grids.grids(), file_metadata(*this, options, computed, scene));
+  if (nano) {
+    write_nvdb(out, grids.grids());
+  } else {
+    write_vdb(out, grids.grids(), file_metadata(*this, options, computed, scene));
+  }
   progress.advance();
 
   if (quiet) return int(ExitCode::done);
@@ -161,7 +168,10 @@ void add_export_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ExportCommand>();
   CLI::App* command = app.add_subcommand("export", "write the voxels and the radiance of a scene's volume as OpenVDB");
   command->add_option("SCENE", options->scene_path, scene_help)->required()->type_name("FILE");
-  command->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb")->required()->type_name("FILE");
+  command
+      ->add_option("-o,--output", options->out, "OpenVDB file to write, .vdb, or NanoVDB file, .nvdb, without metadata")
+      ->required()
+      ->type_name("FILE");
   options->volume.add_to(*command);
   options->light.add_to(*command);
   options->file.add_to(*command);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/in_a_child.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/image.h"
@@ -325,7 +326,7 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
   command->footer(
       "Indices are cells, counted as in the file; places are in metres, units as the grids say.\n"
       "Example: volgi inspect out/cornell.vdb --grid fluence --slice z=16 -o out/fluence.png");
-  command->callback([options, &exit_code] { exit_code = options->run(); });
+  command->callback([options, &exit_code] { exit_code = in_a_child(options->file, [&] { return options->run(); }); });
 }
 
 }  // namespace volgi::app

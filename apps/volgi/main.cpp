@@ -1,11 +1,10 @@
 // volgi: the command line. Thin: options in, library calls, one line for an error, the documented exit code out.
 #include <CLI/CLI.hpp>
-#include <exception>
 #include <iostream>
-#include <new>
 #include <string>
 
 #include "apps/volgi/commands.h"
+#include "apps/volgi/failure.h"
 #include "core/error.h"
 #include "volgi_version.h"
 
@@ -48,15 +47,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
     return int(ExitCode::usage);
-  } catch (const Error& e) {
-    std::cerr << "volgi: " << e.what() << '\n';
-    return int(e.code());
-  } catch (const std::bad_alloc&) {
-    std::cerr << "volgi: out of memory; try a smaller --grid or --size\n";
-    return int(ExitCode::over_limit);
-  } catch (const std::exception& e) {
-    std::cerr << "volgi: " << e.what() << '\n';
-    return int(ExitCode::bad_input);
+  } catch (...) {
+    return app::say_failure();
   }
   return exit_code;
 }

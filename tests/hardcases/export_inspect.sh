@@ -24,6 +24,10 @@ says 'wrote voxels.vdb: 4 grids'
 must "$volgi" export "$scene" -o order2.vdb --grid 12 --scheme conservative --sh-order 2 --iterations 8
 says 'wrote order2.vdb: 14 grids'
 
+must "$volgi" export "$scene" -o a.nvdb --grid 16
+says 'wrote a.nvdb: 9 grids'
+[[ $(head -c 4 a.nvdb) == Nano ]] || fail 'a.nvdb is no NanoVDB file'
+
 must "$volgi" inspect a.vdb
 says '^occupancy \[1\]' '^emission \[W m\^-2\]' '^fluence \[W m\^-2\]' '^sh_1m1 \[W m\^-2 sr\^-1\]' 'scheme +ordinates' \
   'world box +-1,0,-1 ... 1,2,1 m' '16 x 16 x 16 cells of 0.125 m'
@@ -47,6 +51,8 @@ if command -v vdb_print > /dev/null; then
   must vdb_print -m a.vdb
   says '^occupancy +float' '^normal +vec3s' 'class: fog volume' 'vector_type: covariant normalize' 'unit: W m\^-2 sr\^-1' \
     'is_saved_as_half_float: false' '\[-0.938, 0.0625, -0.938, 1\]'
+  must bash -c 'vdb_tool -read a.vdb -print 2>&1'
+  says 'name = "fluence", type = "vec3s"' 'name = "occupancy", type = "float".*dim = \[16, 16, 16\]'
 else
   echo 'SKIPPED: vdb_print is not installed (openvdb-tools), so that only volgi itself has read the files'
 fi

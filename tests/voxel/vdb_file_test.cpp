@@ -1,6 +1,8 @@
 #include "voxel/vdb_file.h"
 
 #include <gtest/gtest.h>
+#include <nanovdb/util/GridHandle.h>
+#include <nanovdb/util/IO.h>
 #include <openvdb/io/Stream.h>
 
 #include <cmath>
@@ -10,6 +12,7 @@
 #include <random>
 
 #include "core/error.h"
+#include "voxel/nvdb_file.h"
 #include "voxel/vdb_summary.h"
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -269,6 +272,42 @@ TEST_F(VdbFileTest, SaysWhenItCannotWrite) {
     }
   }
   EXPECT_EQ(files(), 0u);
+}
+
+/// NanoVDB: names, transforms and values as in OpenVDB, the same bytes every time.
+TEST_F(VdbFileTest, NanoVdbReadsBack) {
+  auto scalar = openvdb::FloatGrid::create(0.0f);
+  scalar->setName("fluence");
+  scalar->setTransform(openvdb::math::Transform::createLinearTransform(0.25));
+  auto color = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
+  color->setName("albedo");
+  for (int i = 0; i < 500; ++i) {
+    const openvdb::Coord at(i % 17, (i * 7) % 23, (i * 3) % 11);
+    scalar->getAccessor().setValue(at, float(i));
+    color->getAccessor().setValue(at, openvdb::Vec3s(float(i), 0.5f, -1.0f));
+  }
+  write_nvdb(folder_ / "a.nvdb", {scalar, color});
+  write_nvdb(folder_ / "b.nvdb", {scalar, color});
+  const auto bytes = [&](const char* name) {
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  EXPECT_EQ(bytes("a.nvdb"), bytes("b.nvdb"));
+  const auto grids = nanovdb::io::readGrids<nanovdb::HostBuffer, std::vector>((folder_ / "a.nvdb").string());
+  ASSERT_EQ(grids.size(), 2u);
+  const auto* read = grids[0].grid<float>();
+  const auto* colors = grids[1].grid<nanovdb::Vec3f>();
+  ASSERT_TRUE(read != nullptr && colors != nullptr);
+  EXPECT_STREQ(read->gridName(), "fluence");
+  EXPECT_STREQ(colors->gridName(), "albedo");
+  EXPECT_EQ(read->activeVoxelCount(), scalar->activeVoxelCount());
+  EXPECT_NEAR(read->voxelSize()[0], 0.25, 1e-12);
+  auto values = read->getAccessor();
+  for (auto it = scalar->cbeginValueOn(); it; ++it) {
+    const openvdb::Coord c = it.getCoord();
+    EXPECT_EQ(values.getValue({c.x(), c.y(), c.z()}), *it);
+  }
+  EXPECT_THROW(write_nvdb(folder_ / "none/a.nvdb", {scalar}), Error);
 }
 
 TEST(VdbSummaryTest, CountsAndMeasuresActiveCells) {
