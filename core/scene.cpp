@@ -10,7 +10,8 @@
 #include <limits>
 #include <string_view>
 #include <tuple>
-#include <unordered_set>
+#include <type_traits>
+#include <unordered_map>
 
 #include "core/error.h"
 #include "core/gltf/gltf_internal.h"
@@ -246,6 +247,37 @@ WorldBox SceneFile::bounds(double time_s) const {
   return triangle_bounds(data_->place_meshes(data_->nodes_at(time_s), dropped));
 }
 
+namespace {
+
+/// A layer that can be seen through, on a surface: a little in front of it.
+void lift(Scene& scene, const std::vector<std::pair<size_t, size_t>>& layers) {
+  if (layers.empty()) return;
+  constexpr float share = 2e-5f;  // of the scene's diagonal: more than positions round by, less than anybody sees
+  update_bounds(scene);
+  const float height = share * glm::length(scene.bounds_max - scene.bounds_min);
+  for (const auto& [m, triangle] : layers) {
+    Mesh& mesh = scene.meshes[m];
+    glm::uvec3& t = mesh.triangles[triangle];
+    const glm::vec3 a = mesh.positions[t.x];
+    const glm::vec3 up = height * glm::normalize(glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
+    for (int c = 0; c < 3; ++c) {
+      const std::uint32_t from = t[c];
+      t[c] = std::uint32_t(mesh.positions.size());
+      mesh.positions.push_back(mesh.positions[from] + up);
+      const auto copy = [&](auto& values) {
+        if (!values.empty())
+          values.push_back(typename std::remove_reference_t<decltype(values)>::value_type(values[from]));
+      };
+      copy(mesh.normals);
+      copy(mesh.uv[0]);
+      copy(mesh.uv[1]);
+      copy(mesh.colors);
+    }
+  }
+}
+
+}  // namespace
+
 size_t drop_duplicate_triangles(Scene& scene) {
   // Corners from the smallest on, in their order: the same for the same triangle whichever corner its list begins with.
   using Key = std::array<float, 9>;
@@ -255,18 +287,45 @@ size_t drop_duplicate_triangles(Scene& scene) {
     }
   };
   const auto less = [](glm::vec3 a, glm::vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
-  std::unordered_set<Key, Hash> seen;
-  seen.reserve(scene.triangle_count());
+  const auto key_of = [&](const Mesh& mesh, glm::uvec3 t) {
+    std::array<glm::vec3, 3> p{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+    std::rotate(p.begin(), std::min_element(p.begin(), p.end(), less), p.end());
+    Key key{};
+    for (size_t i = 0; i < 9; ++i) key[i] = p[i / 3][int(i % 3)] + 0.0f;  // -0 is 0
+    return key;
+  };
+  const auto opaque = [&](size_t mesh) {
+    return scene.materials[size_t(scene.meshes[mesh].material)].alpha_mode == AlphaMode::opaque;
+  };
+  using Place = std::pair<size_t, size_t>;  // mesh, triangle
+  std::unordered_map<Key, Place, Hash> lowest;
+  std::unordered_multimap<Key, Place, Hash> above;  // layers, of which there are few
+  lowest.reserve(scene.triangle_count());
+  const auto hides = [&](size_t below, size_t m) {
+    return scene.meshes[below].material == scene.meshes[m].material || (opaque(below) && opaque(m));
+  };
+  std::vector<Place> layers;
   size_t dropped = 0;
-  for (Mesh& mesh : scene.meshes) {
-    dropped += std::erase_if(mesh.triangles, [&](glm::uvec3 t) {
-      std::array<glm::vec3, 3> p{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
-      std::rotate(p.begin(), std::min_element(p.begin(), p.end(), less), p.end());
-      Key key{};
-      for (size_t i = 0; i < 9; ++i) key[i] = p[i / 3][int(i % 3)] + 0.0f;  // -0 is 0
-      return !seen.insert(key).second;
-    });
+  for (size_t m = 0; m < scene.meshes.size(); ++m) {
+    Mesh& mesh = scene.meshes[m];
+    size_t kept = 0;
+    for (const glm::uvec3 t : mesh.triangles) {
+      const Key key = key_of(mesh, t);
+      const auto [first, is_new] = lowest.try_emplace(key, m, kept);
+      if (!is_new) {
+        const auto [begin, end] = above.equal_range(key);
+        if (hides(first->second.first, m) ||
+            std::any_of(begin, end, [&](const auto& layer) { return hides(layer.second.first, m); }))
+          continue;
+        above.emplace(key, Place(m, kept));
+        layers.push_back(opaque(m) ? first->second : Place(m, kept));
+      }
+      mesh.triangles[kept++] = t;
+    }
+    dropped += mesh.triangles.size() - kept;
+    mesh.triangles.resize(kept);
   }
+  lift(scene, layers);
   std::erase_if(scene.meshes, [](const Mesh& mesh) { return mesh.triangles.empty(); });
   return dropped;
 }

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
+#include <string>
 
 #include "apps/volgi/failure.h"
 #include "core/error.h"
@@ -29,24 +30,49 @@ namespace {
   _exit(code);
 }
 
+std::string all_of(int descriptor) {
+  std::string text;
+  char part[4096];
+  for (;;) {
+    const ssize_t count = read(descriptor, part, sizeof part);
+    if (count > 0) text.append(part, size_t(count));
+    if (count == 0 || (count < 0 && errno != EINTR)) return text;
+  }
+}
+
 }  // namespace
 
 int in_a_child(const std::filesystem::path& file, const std::function<int()>& work) {
   std::fflush(nullptr);
+  int said[2];
+  if (pipe(said) != 0) return work();  // as well as can be
   const pid_t child = fork();
-  if (child < 0) return work();  // as well as can be
+  if (child < 0) {
+    close(said[0]);
+    close(said[1]);
+    return work();
+  }
   if (child == 0) {
     const rlimit none{0, 0};  // a crash is an answer here, and leaves no core file
     setrlimit(RLIMIT_CORE, &none);
+    dup2(said[1], STDERR_FILENO);
+    close(said[0]);
+    close(said[1]);
     answer(work);
   }
+  close(said[1]);
+  const std::string words = all_of(said[0]);
+  close(said[0]);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw Error(ExitCode::bad_input, file.string() + ": the process that reads it is lost");
   }
-  if (WIFEXITED(status)) return WEXITSTATUS(status);
-  throw Error(ExitCode::bad_input,
-              fmt::format("{}: damaged: OpenVDB ends at it with signal {}", file.string(), WTERMSIG(status)));
+  // What an allocator says before it gives up helps nobody.
+  if (!WIFEXITED(status))
+    throw Error(ExitCode::bad_input,
+                fmt::format("{}: damaged: OpenVDB ends at it with signal {}", file.string(), WTERMSIG(status)));
+  std::cerr << words;
+  return WEXITSTATUS(status);
 }
 
 }  // namespace volgi::app

@@ -153,13 +153,21 @@ void for_each_element(const Document& document, const tinygltf::Accessor& access
   }
 }
 
+/// Integers where only normalized ones make sense, without the word.
+bool repairs_normalized(const tinygltf::Accessor& accessor, const Expected& expected) {
+  return !accessor.normalized && expected.normalized_integers && !expected.plain_integers &&
+         accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && component_size(accessor.componentType) <= 2;
+}
+
 void check_type(const Document& document, const tinygltf::Accessor& accessor, const Expected& expected,
                 const std::string& who) {
   const bool is_vector = accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type <= TINYGLTF_TYPE_VEC4 ||
                          accessor.type == TINYGLTF_TYPE_MAT4;
   const bool is_float = accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
   const bool is_short = component_size(accessor.componentType) <= 2;
-  const bool good_component = is_float || (accessor.normalized && expected.normalized_integers && is_short) ||
+  const bool forgotten = repairs_normalized(accessor, expected);
+  const bool good_component = is_float || forgotten ||
+                              (accessor.normalized && expected.normalized_integers && is_short) ||
                               (!accessor.normalized && expected.plain_integers && is_short);
   if (!is_vector || !good_component || !expected.components.contains(component_count(accessor.type))) {
     refuse(document.path, fmt::format("{}: wrong accessor type (type {}, componentType {}{})", who, accessor.type,
@@ -190,12 +198,15 @@ Elements read_elements(const Document& document, int index, const Expected& expe
   const Layout at = layout(document, accessor, name);
   const size_t size = component_size(accessor.componentType);
 
+  const bool forgotten = repairs_normalized(accessor, expected);
+  if (forgotten) repair(document, name + ": integers without 'normalized'; they count as normalized");
+
   Elements elements;
   elements.components = component_count(accessor.type);
   elements.values.assign(accessor.count * elements.components, 0.0f);
   for_each_element(document, accessor, at, name, [&](size_t i, const unsigned char* bytes) {
     for (size_t c = 0; c < elements.components; ++c) {
-      float value = load_float(bytes + c * size, accessor.componentType, accessor.normalized);
+      float value = load_float(bytes + c * size, accessor.componentType, accessor.normalized || forgotten);
       if (!std::isfinite(value)) {
         const std::string what = fmt::format("{}: element {} is {}", name, i, value);
         if (!expected.repair) refuse(document.path, what);

@@ -36,45 +36,54 @@ std::uint64_t word_at(const std::vector<unsigned char>& bytes, size_t offset) {
 
 struct Chunks {
   std::string_view json;
-  std::string_view rest;  // the other chunks, with their headers
+  std::string_view binary;
 };
 
-/// Of a .glb, whose every chunk lies inside the file. (tinygltf forgets the second chunk's header.)
+/// Of a .glb, whose every chunk lies inside the file; what is neither JSON nor BIN is passed over (glTF 2.0, 4.4).
 Chunks glb_chunks(const fs::path& file, const std::vector<unsigned char>& bytes) {
   constexpr size_t header_size = 12, chunk_header_size = 8;
-  constexpr std::uint64_t json_type = 0x4E4F534A;
+  constexpr std::uint64_t json_type = 0x4E4F534A, binary_type = 0x004E4942;
   if (bytes.size() < header_size + chunk_header_size) refuse(file, "the .glb file is truncated in its header");
   if (word_at(bytes, 4) != 2) refuse(file, fmt::format("glTF version {} is not supported", word_at(bytes, 4)));
   const std::uint64_t length = word_at(bytes, 8);
   if (length > bytes.size()) {
     refuse(file, fmt::format("the .glb file is truncated: {} of {} bytes", bytes.size(), length));
   }
+  std::string_view binary;
   for (std::uint64_t chunk = header_size; chunk < length;) {
     const bool has_header = length - chunk >= chunk_header_size;
     if (!has_header || word_at(bytes, chunk) > length - chunk - chunk_header_size) {
       refuse(file, fmt::format("the .glb chunk at byte {} is longer than the file", chunk));
     }
-    chunk += chunk_header_size + word_at(bytes, chunk);
+    const std::uint64_t size = word_at(bytes, chunk);
+    if (binary.empty() && word_at(bytes, chunk + 4) == binary_type)
+      binary = text_of(bytes, chunk + chunk_header_size, size);
+    chunk += chunk_header_size + size;
   }
   if (length < header_size + chunk_header_size || word_at(bytes, 16) != json_type) {
     refuse(file, "the .glb file does not begin with a JSON chunk");
   }
-  const size_t json_begins = header_size + chunk_header_size, json_size = word_at(bytes, header_size);
-  return {text_of(bytes, json_begins, json_size),
-          text_of(bytes, json_begins + json_size, length - json_begins - json_size)};
+  return {text_of(bytes, header_size + chunk_header_size, word_at(bytes, header_size)), binary};
 }
 
-/// A .glb of other JSON and the same other chunks.
-std::string glb_of(std::string json, std::string_view rest) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
+/// A .glb of these chunks.
+std::string glb_of(std::string json, std::string_view binary) {
+  const auto padded = [](size_t size) { return (size + 3) / 4 * 4; };
+  json.resize(padded(json.size()), ' ');
   const auto word = [](size_t value) {
     std::string out;
     for (int byte = 0; byte < 4; ++byte) out += char(value >> (8 * byte) & 255u);
     return out;
   };
-  constexpr size_t headers = 20;
-  return std::string(glb_magic) + word(2) + word(headers + json.size() + rest.size()) + word(json.size()) + "JSON" +
-         json + std::string(rest);
+  constexpr size_t header_size = 12, chunk_header_size = 8;
+  const size_t binary_size = padded(binary.size());
+  const size_t size =
+      header_size + chunk_header_size + json.size() + (binary.empty() ? 0 : chunk_header_size + binary_size);
+  std::string out = std::string(glb_magic) + word(2) + word(size) + word(json.size()) + "JSON" + json;
+  if (binary.empty()) return out;
+  out.reserve(size);
+  out.append(word(binary_size)).append("BIN\0", 4).append(binary).append(binary_size - binary.size(), '\0');
+  return out;
 }
 
 /// tinygltf gets at what check_json has named and at nothing else.
@@ -122,7 +131,7 @@ Document read_document(const fs::path& path, const SceneReading& reading) {
     binary = text_of(bytes, 0, 4) == glb_magic;
     const Chunks chunks = binary ? glb_chunks(path, bytes) : Chunks{text_of(bytes, 0, bytes.size()), {}};
     CheckedJson checked = check_json(path, reading, chunks.json);
-    text = binary ? glb_of(std::move(checked.text), chunks.rest) : std::move(checked.text);
+    text = binary ? glb_of(std::move(checked.text), chunks.binary) : std::move(checked.text);
     files.externals = std::move(checked.externals);
     document.missing_images = std::move(checked.missing_images);
   }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,11 +15,19 @@ using Json = nlohmann::json;
 /// A picture of one white texel, for tinygltf, which refuses images that are nowhere. It is never looked at.
 constexpr std::string_view PLACEHOLDER = "missing";
 
-/// Bytes of a data URI of any media type (RFC 2397); the type is a hint, the bytes say what they are.
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+bool is_data(const std::string& uri) { return lower(uri.substr(0, 5)) == "data:"; }
+
+/// Bytes of a data URI of any media type (RFC 2397); the type is a hint, the bytes say what they are. As browsers read
+/// them: escapes and white space in base64, any case.
 std::vector<unsigned char> data_of(const std::filesystem::path& file, const std::string& who, const std::string& uri) {
   const size_t comma = uri.find(',');
   if (comma == std::string::npos) refuse(file, fmt::format("{} has a data URI without data", who));
-  if (!std::string_view(uri).substr(0, comma).ends_with(";base64")) {
+  if (!lower(uri.substr(0, comma)).ends_with("base64")) {
     const std::optional<std::string> plain = percent_decoded(uri.substr(comma + 1));
     if (!plain) refuse(file, fmt::format("{} has a malformed data URI", who));
     return {plain->begin(), plain->end()};
@@ -25,8 +35,11 @@ std::vector<unsigned char> data_of(const std::filesystem::path& file, const std:
   std::vector<unsigned char> bytes;
   std::string mime_type;
   // Of an empty one tinygltf says that it failed.
-  const std::string known = "data:application/octet-stream;base64," + uri.substr(comma + 1);
-  if (uri.size() > comma + 1 && !tinygltf::DecodeDataURI(&bytes, mime_type, known, 0, false))
+  std::string encoded = uri.substr(comma + 1);
+  if (encoded.find('%') != std::string::npos) encoded = percent_decoded(encoded).value_or(encoded);
+  std::erase_if(encoded, [](unsigned char c) { return std::isspace(c) != 0; });
+  const std::string known = "data:application/octet-stream;base64," + encoded;
+  if (!encoded.empty() && !tinygltf::DecodeDataURI(&bytes, mime_type, known, 0, false))
     refuse(file, fmt::format("{} has a malformed data URI", who));
   return bytes;
 }
@@ -60,7 +73,7 @@ class ExternalTaker {
       Json& image = list[i];
       if (!image.is_object() || !image.contains("uri")) continue;
       const std::string uri = image["uri"].get<std::string>();
-      if (!image.contains("name") && !uri.starts_with("data:")) image["name"] = uri;  // for messages
+      if (!image.contains("name") && !is_data(uri)) image["name"] = uri;  // for messages
       std::optional<External> external = taken(uri, fmt::format("images[{}]", i), false);
       if (!external) {
         out_.missing_images.insert(int(i));
@@ -80,7 +93,8 @@ class ExternalTaker {
 
   /// Nothing where it is not there and need not be.
   std::optional<External> taken(const std::string& uri, const std::string& who, bool needed) const {
-    if (uri.starts_with("data:")) return External{{}, data_of(file_, who, uri), {}, who};
+    if (is_data(uri)) return External{{}, data_of(file_, who, uri), {}, who};
+    if (!needed && !reading_.strict && is_elsewhere(uri)) return std::nullopt;  // a picture: it counts as white
     const std::optional<std::filesystem::path> path = resolve_uri(file_, reading_, who, uri);
     if (path) return External{*path, {}, {}, uri};
     if (needed) refuse(file_, fmt::format("{}: missing file '{}'", who, uri));

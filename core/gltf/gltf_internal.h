@@ -70,6 +70,9 @@ void take_externals(const std::filesystem::path& file, const SceneReading& readi
 /// file. Nothing where there is no such file.
 std::optional<std::filesystem::path> resolve_uri(const std::filesystem::path& file, const SceneReading& reading,
                                                  const std::string& who, const std::string& uri);
+/// A URI with a scheme, such as https: or a drive's letter, an absolute one, or none at all: of no file beside this
+/// one.
+bool is_elsewhere(const std::string& uri);
 /// Bytes that a text with %XX stands for; nothing when an escape is malformed.
 std::optional<std::string> percent_decoded(const std::string& uri);
 

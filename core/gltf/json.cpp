@@ -188,11 +188,18 @@ void check_nesting(const std::filesystem::path& file, std::string_view text) {
   }
 }
 
-void check_asset(const std::filesystem::path& file, const Json& root) {
+void check_asset(const std::filesystem::path& file, const SceneReading& reading, Json& root) {
   const auto asset = root.find("asset");
+  if (asset != root.end() && asset->is_object() && asset->contains("version") && (*asset)["version"].is_number()) {
+    repair(file, reading, "asset.version is a number, not a string");
+    (*asset)["version"] = fmt::format("{:.1f}", (*asset)["version"].get<double>());
+  }
   if (asset == root.end() || !asset->is_object() || !asset->contains("version") || !(*asset)["version"].is_string()) {
     refuse(file, "not a glTF file: asset.version is missing");
   }
+  const Json& least = asset->contains("minVersion") ? (*asset)["minVersion"] : (*asset)["version"];
+  if (least.is_string() && least.get<std::string>() > "2.0" && asset->contains("minVersion"))
+    refuse(file, fmt::format("needs glTF {}; 2.0 is supported", least.get<std::string>()));
   const auto version = (*asset)["version"].get<std::string>();
   if (!version.starts_with("2.")) {
     refuse(file,
@@ -222,6 +229,37 @@ void check_extensions(const std::filesystem::path& file, const Json& root) {
   }
 }
 
+/// Names that are null, as serializers write them.
+void drop_null_names(const std::filesystem::path& file, const SceneReading& reading, Json& value) {
+  if (value.is_array()) {
+    for (Json& child : value) drop_null_names(file, reading, child);
+  } else if (value.is_object()) {
+    if (value.contains("name") && value["name"].is_null()) {
+      repair(file, reading, "a name is null; it counts as none");
+      value.erase("name");
+    }
+    for (auto& [key, child] : value.items()) {
+      if (key != "extras" && key != "extensions") drop_null_names(file, reading, child);
+    }
+  }
+}
+
+/// tinygltf forgets all of pbrMetallicRoughness where baseColorFactor has not four numbers.
+void complete_colors(const std::filesystem::path& file, const SceneReading& reading, Json& root) {
+  const auto materials = root.find("materials");
+  if (materials == root.end()) return;
+  for (size_t i = 0; i < materials->size(); ++i) {
+    Json& material = (*materials)[i];
+    if (!material.contains("pbrMetallicRoughness")) continue;
+    Json& pbr = material["pbrMetallicRoughness"];
+    if (!pbr.contains("baseColorFactor") || pbr["baseColorFactor"].size() == 4) continue;
+    const std::string who = fmt::format("materials[{}].pbrMetallicRoughness.baseColorFactor", i);
+    if (pbr["baseColorFactor"].size() != 3) refuse(file, who + " must have four numbers");
+    repair(file, reading, who + " has three numbers; alpha counts as 1");
+    pbr["baseColorFactor"].push_back(1.0);
+  }
+}
+
 }  // namespace
 
 CheckedJson check_json(const std::filesystem::path& file, const SceneReading& reading, std::string_view text) {
@@ -234,9 +272,11 @@ CheckedJson check_json(const std::filesystem::path& file, const SceneReading& re
     refuse(file, fmt::format("not a glTF file: {}", e.what()));
   }
   if (!root.is_object()) refuse(file, "not a glTF file: the JSON is not an object");
-  check_asset(file, root);
+  check_asset(file, reading, root);
   check_extensions(file, root);
+  drop_null_names(file, reading, root);
   PropertyCheck(file).walk(root);
+  complete_colors(file, reading, root);
   CheckedJson out;
   take_externals(file, reading, root, out);
   out.text = root.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -9,6 +9,7 @@
 namespace volgi::gltf {
 namespace {
 
+constexpr double infinitely_far_m = 1e11;
 constexpr double largest_intensity = 1e18;  // its square root is still a float's distance
 
 Light read_light(const Document& document, size_t index) {
@@ -32,11 +33,15 @@ Light read_light(const Document& document, size_t index) {
     refuse(document.path, fmt::format("{}: its colour or intensity is not a finite number from 0 up", who));
   }
   light.intensity = glm::vec3(in.intensity * glm::dvec3(color[0], color[1], color[2]));
-  if (!(in.range >= 0.0) || in.range > 1e12) refuse(document.path, fmt::format("{}: its range is {}", who, in.range));
-  light.range_m = float(in.range);
+  if (!(in.range >= 0.0)) refuse(document.path, fmt::format("{}: its range is {}", who, in.range));
+  light.range_m = in.range > infinitely_far_m ? 0.0f : float(in.range);
   if (light.type == Light::Type::spot) {
     double inner = in.spot.innerConeAngle;
-    const double outer = in.spot.outerConeAngle;
+    double outer = in.spot.outerConeAngle;
+    if (outer > glm::half_pi<double>() + 1e-6) {
+      repair(document, fmt::format("{}: its outer cone angle {} is larger than pi/2, which counts", who, outer));
+      outer = glm::half_pi<double>();
+    }
     if (inner > outer && outer > 0.0) {
       repair(document, fmt::format("{}: its inner cone angle {} is larger than the outer one, {}, which counts", who,
                                    inner, outer));
@@ -50,6 +55,11 @@ Light read_light(const Document& document, size_t index) {
     light.outer_cone_rad = float(outer);
   }
   return light;
+}
+
+bool is_used(const Document& document, int camera) {
+  const auto& nodes = document.model.nodes;
+  return std::any_of(nodes.begin(), nodes.end(), [&](const tinygltf::Node& node) { return node.camera == camera; });
 }
 
 Camera read_camera(const Document& document, size_t index) {
@@ -73,7 +83,9 @@ Camera read_camera(const Document& document, size_t index) {
     far = in.orthographic.zfar;
     good = camera.ymag > 0.0f && near >= 0.0 && far > near;
   }
-  if (!good || !(far < 1e12) || !(camera.ymag < 1e12f)) {
+  if (far > infinitely_far_m) far = 0.0;
+  if (!good || !(camera.ymag < 1e12f)) {
+    if (!is_used(document, int(index))) return camera;
     refuse(document.path, fmt::format("{}: its field of view, znear or zfar makes no sense", who));
   }
   camera.znear = float(near);

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "core/gltf/gltf_internal.h"
 
@@ -11,8 +13,12 @@ namespace {
 
 float in_range(const Document& document, double value, double smallest, double largest, const std::string& who,
                std::string_view what) {
-  if (value >= smallest && value <= largest) return float(value);
-  refuse(document.path, fmt::format("{}: {} is {}, outside {} ... {}", who, what, value, smallest, largest));
+  const double nearest = std::clamp(value, smallest, largest);
+  if (value != nearest) {
+    repair(document, fmt::format("{}: {} is {}, outside {} ... {}; it counts as {}", who, what, value, smallest,
+                                 largest, nearest));
+  }
+  return float(nearest);
 }
 
 glm::vec3 read_emission(const Document& document, const tinygltf::Material& in, const std::string& who) {
@@ -54,9 +60,22 @@ void read_ior(const Document& document, const tinygltf::Material& in, const std:
   const tinygltf::Value* value = find(in, "KHR_materials_ior", "ior");
   if (value == nullptr) return;
   const double ior = value->GetNumberAsDouble();
-  if (ior != 0.0 && !(ior >= 1.0 && ior <= largest_ior))
-    refuse(document.path, fmt::format("{}: ior is {}, neither 0 nor inside 1 ... {}", who, ior, largest_ior));
-  material.ior = float(ior);
+  material.ior = ior == 0.0 ? 0.0f : in_range(document, ior, 1.0, largest_ior, who, "ior");
+}
+
+/// Of an extension that tinygltf does not know.
+tinygltf::TextureInfo texture_info(const tinygltf::Value& value) {
+  tinygltf::TextureInfo info;
+  const auto whole = [&](const char* name, int otherwise) {
+    if (!value.Has(name) || !value.Get(name).IsNumber()) return otherwise;
+    const double number = value.Get(name).GetNumberAsDouble();
+    return number >= 0.0 && number <= double(std::numeric_limits<int>::max()) ? int(number) : otherwise;
+  };
+  info.index = whole("index", -1);
+  info.texCoord = whole("texCoord", 0);
+  if (value.Has("extensions") && value.Get("extensions").Has("KHR_texture_transform"))
+    info.extensions["KHR_texture_transform"] = value.Get("extensions").Get("KHR_texture_transform");
+  return info;
 }
 
 /// KHR_materials_pbrSpecularGlossiness, archived: its colours instead of the metallic workflow's. Where a texture says
@@ -82,11 +101,7 @@ void read_specular_glossiness(const Document& document, const tinygltf::Material
   numbers("diffuseFactor", 4, material.base_color_factor);
   material.base_color = {};
   if (const tinygltf::Value* texture = find(in, extension, "diffuseTexture")) {
-    tinygltf::TextureInfo info;
-    if (texture->Has("index") && texture->Get("index").IsInt()) info.index = texture->Get("index").GetNumberAsInt();
-    if (texture->Has("texCoord") && texture->Get("texCoord").IsInt())
-      info.texCoord = texture->Get("texCoord").GetNumberAsInt();
-    material.base_color = textures.use(info, who + " diffuseTexture");
+    material.base_color = textures.use(texture_info(*texture), who + " diffuseTexture");
   }
   material.metallic_factor = 0.0f;
   material.metallic = {};
@@ -103,7 +118,12 @@ AlphaMode read_alpha_mode(const Document& document, const std::string& mode, con
   if (mode == "OPAQUE" || mode.empty()) return AlphaMode::opaque;
   if (mode == "MASK") return AlphaMode::mask;
   if (mode == "BLEND") return AlphaMode::blend;
-  refuse(document.path, fmt::format("{} has the unknown alphaMode '{}'", who, mode));
+  std::string upper = mode;
+  std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+  const bool known = upper != mode && (upper == "OPAQUE" || upper == "MASK" || upper == "BLEND");
+  if (!known) refuse(document.path, fmt::format("{} has the unknown alphaMode '{}'", who, mode));
+  repair(document, fmt::format("{}: its alphaMode '{}' counts as {}", who, mode, upper));
+  return read_alpha_mode(document, upper, who);
 }
 
 Material read_material(const Document& document, size_t index, TextureTable& textures) {

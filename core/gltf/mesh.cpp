@@ -119,9 +119,10 @@ class PrimitiveReader {
     std::vector<glm::uvec3> out;
     if (in_.mode == TINYGLTF_MODE_TRIANGLES) {
       if (v.size() % 3 != 0) {
-        refuse(document_.path, fmt::format("{}: {} corners are not a multiple of three", who_, v.size()));
+        repair(document_,
+               fmt::format("{}: {} corners are not a multiple of three; the last ones are left out", who_, v.size()));
       }
-      for (size_t i = 0; i < v.size(); i += 3) out.emplace_back(v[i], v[i + 1], v[i + 2]);
+      for (size_t i = 0; i + 2 < v.size(); i += 3) out.emplace_back(v[i], v[i + 1], v[i + 2]);
       return out;
     }
     const bool strip = in_.mode == TINYGLTF_MODE_TRIANGLE_STRIP;

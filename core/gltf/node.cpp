@@ -38,10 +38,12 @@ void read_transform(const Document& document, const tinygltf::Node& in, const st
     const auto& r = in.rotation;
     out.rotation = glm::dquat(r[3], r[0], r[1], r[2]);  // glTF stores x y z w
     const double length = glm::length(out.rotation);
-    if (!(length > 1e-6) || !std::isfinite(length)) {
-      refuse(document.path, fmt::format("{}: its rotation is not a unit quaternion", who));
+    if (length > 1e-6 && std::isfinite(length)) {
+      out.rotation /= length;
+    } else {
+      repair(document, fmt::format("{}: its rotation is no unit quaternion; it counts as none", who));
+      out.rotation = glm::dquat(1.0, 0.0, 0.0, 0.0);
     }
-    out.rotation /= length;
   }
 }
 

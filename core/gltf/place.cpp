@@ -9,8 +9,8 @@ namespace {
 
 /// A triangle whose height is this share of its longest edge is below what float positions resolve.
 constexpr double thinnest = 1e-7;
-/// Normals shorter than this have no direction worth keeping.
-constexpr float shortest_normal = 0.1f;
+/// Normals shorter than this have no direction.
+constexpr float shortest_normal = 1e-6f;
 
 glm::dvec3 cross_of(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) { return glm::cross(b - a, c - a); }
 

@@ -32,6 +32,8 @@ bool is_png_or_jpeg(Bytes bytes) {
   return begins_with({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}) || begins_with({0xff, 0xd8, 0xff});
 }
 
+constexpr int gl_clamp = 0x2900;  // of OpenGL before 3.1; never glTF's
+
 Wrap wrap_of(const Document& document, int mode, const std::string& who) {
   switch (mode) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
@@ -39,6 +41,9 @@ Wrap wrap_of(const Document& document, int mode, const std::string& who) {
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return Wrap::mirrored_repeat;
     case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return Wrap::clamp_to_edge;
+    case gl_clamp:
+      repair(document, fmt::format("{}: wrap mode GL_CLAMP counts as CLAMP_TO_EDGE", who));
       return Wrap::clamp_to_edge;
     default:
       refuse(document.path, fmt::format("{} has the unknown wrap mode {}", who, mode));

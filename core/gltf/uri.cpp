@@ -25,7 +25,25 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
 }
 
+/// A file whose name holds what looks like an escape; one of a folder written with backslashes; one with a query, as
+/// browsers find it.
+std::optional<fs::path> by_other_names(const fs::path& folder, const fs::path& root, const std::string& uri,
+                                       const std::string& decoded) {
+  std::string slashed = decoded;
+  std::replace(slashed.begin(), slashed.end(), '\\', '/');
+  for (const std::string& name : {uri, slashed, slashed.substr(0, slashed.find_first_of("?#"))}) {
+    std::error_code error;
+    const fs::path written = (folder / fs::path(name)).lexically_normal();
+    if (name == decoded || !lies_in(written, root) || !fs::is_regular_file(written, error)) continue;
+    const fs::path target = fs::weakly_canonical(written, error);
+    if (!error && lies_in(target, root)) return target;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+bool is_elsewhere(const std::string& uri) { return uri.empty() || uri[0] == '/' || has_scheme(uri); }
 
 std::optional<std::string> percent_decoded(const std::string& uri) {
   std::string out;
@@ -50,7 +68,7 @@ std::optional<fs::path> resolve_uri(const fs::path& file, const SceneReading& re
   if (decoded.empty() || decoded.find('\0') != std::string::npos)
     refuse(file, fmt::format("{} has a malformed URI '{}'", who, uri));
   const fs::path relative(decoded);
-  if (has_scheme(uri) || has_scheme(decoded) || relative.is_absolute())
+  if (is_elsewhere(uri) || relative.is_absolute())
     refuse(file, fmt::format("{}: the URI '{}' leaves the file's folder, which is not allowed", who, decoded));
   std::error_code error;
   const fs::path folder = fs::canonical(file.has_parent_path() ? file.parent_path() : fs::path("."), error);
@@ -65,11 +83,9 @@ std::optional<fs::path> resolve_uri(const fs::path& file, const SceneReading& re
                              reading.root.empty() ? "the file's folder" : "the root folder"));
   }
   if (error || !fs::exists(target, error)) {
-    // A file whose name holds what looks like an escape.
-    const fs::path raw = (folder / fs::path(uri)).lexically_normal();
-    if (decoded == uri || !lies_in(raw, root) || !fs::is_regular_file(raw, error)) return std::nullopt;
-    target = fs::weakly_canonical(raw, error);
-    if (error || !lies_in(target, root)) return std::nullopt;
+    const std::optional<fs::path> other = by_other_names(folder, root, uri, decoded);
+    if (!other) return std::nullopt;
+    target = *other;
   }
   if (!fs::is_regular_file(target, error)) refuse(file, fmt::format("{}: '{}' is not a file", who, decoded));
   return target;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 
 #include "core/error.h"
@@ -289,6 +290,160 @@ TEST_F(SceneTolerance, OldFilesAreToldTheWayOut) {
   writer.triangle();
   writer.root["asset"]["version"] = "1.0";
   refused(save(), "glTF version 1.0 is not supported, only 2.0 is; Blender");
+}
+
+TEST_F(SceneTolerance, FactorsOutsideTheirRange) {
+  writer.push("materials",
+              {{"pbrMetallicRoughness",
+                {{"baseColorFactor", {1.0000001, 0.5, -1e-9}}, {"metallicFactor", 1.2}, {"roughnessFactor", -0.1}}},
+               {"alphaMode", "blend"},
+               {"extensions", {{"KHR_materials_ior", {{"ior", 0.9}}}}}});
+  textured_triangle();
+  for (const char* fault : {"has three numbers", "baseColorFactor is", "metallicFactor is 1.2",
+                            "roughnessFactor is -0.1", "ior is 0.9", "'blend' counts as BLEND"}) {
+    SCOPED_TRACE(fault);
+    ::testing::internal::CaptureStderr();
+    const Scene scene = load_scene(save());
+    EXPECT_NE(::testing::internal::GetCapturedStderr().find(fault), std::string::npos);
+    const Material& m = scene.materials[0];
+    EXPECT_EQ(m.base_color_factor, glm::vec4(1.0f, 0.5f, 0.0f, 1.0f));
+    EXPECT_EQ(m.metallic_factor, 1.0f);
+    EXPECT_EQ(m.roughness_factor, 0.0f);
+    EXPECT_EQ(m.ior, 1.0f);
+    EXPECT_EQ(m.alpha_mode, AlphaMode::blend);
+  }
+  refused(save(), "baseColorFactor", {.scene = {}, .animation = {}, .root = {}, .strict = true});
+  writer.root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1};
+  refused(save(), "must have four numbers");
+}
+
+// Two layers of one place: where the upper one is a hole, the lower one shows; whichever comes first in the file.
+TEST_F(SceneTolerance, LayersOfOtherMaterials) {
+  for (const bool hole_first : {true, false}) {
+    writer = GltfWriter();
+    const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+    for (const bool hole : {hole_first, !hole_first})
+      writer.push("materials", {{"alphaMode", hole ? "MASK" : "OPAQUE"}});
+    Json primitives = Json::array();
+    for (const int m : {0, 1, 1}) primitives.push_back({{"material", m}, {"attributes", {{"POSITION", p}}}});
+    writer.push("nodes", {{"mesh", writer.push("meshes", {{"primitives", primitives}})}});
+    ::testing::internal::CaptureStderr();
+    const Scene scene = load_scene(save());
+    EXPECT_NE(::testing::internal::GetCapturedStderr().find("1 triangles lie exactly on others"), std::string::npos);
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    const auto height = [&](bool hole) {
+      const Mesh& mesh = scene.meshes[hole == hole_first ? 0 : 1];
+      return mesh.positions[mesh.triangles[0].x].z;
+    };
+    EXPECT_NEAR(height(true) - height(false), 2e-5f * std::sqrt(2.0f), 1e-6f);
+  }
+}
+
+TEST_F(SceneTolerance, DataUrisAsBrowsersReadThem) {
+  writer.triangle();
+  std::string escaped, broken;
+  for (const char c : test::base64(writer.bin)) {
+    escaped += c == '/' ? "%2F" : c == '+' ? "%2B" : c == 'A' ? "%41" : std::string(1, c);
+    broken += std::string(1, c) + (broken.size() % 20 == 7 ? "\n " : "");
+  }
+  for (const std::string& uri : {"data:;base64," + escaped, "DATA:x/y;BASE64," + test::base64(writer.bin),
+                                 "data:;base64," + broken, "data:x/y; base64," + test::base64(writer.bin)}) {
+    const auto file = folder / fresh_name(".gltf");
+    test::write_bytes(file, writer.finished(uri).dump());
+    EXPECT_EQ(silent(file).triangle_count(), 1u) << uri;
+  }
+}
+
+TEST_F(SceneTolerance, NamesAsOtherSystemsWriteThem) {
+  std::filesystem::create_directory(folder / "sub");
+  test::write_bytes(folder / "sub/a.png", picture());
+  test::write_bytes(folder / "ns:a.png", picture());
+  for (const char* uri : {"sub\\a.png", "sub/a.png?v=3", "sub/a.png#top", "ns%3Aa.png", "./ns:a.png"}) {
+    writer = GltfWriter();
+    paint({{"index", texture({{"uri", uri}})}});
+    textured_triangle();
+    EXPECT_EQ(albedo(silent(save()), 1), glm::vec3(0, 1, 0)) << uri;
+  }
+  for (const char* uri : {"C:\\me\\a.png", "/textures/a.png", "https://example.com/a.png", ""}) {
+    writer = GltfWriter();
+    paint({{"index", texture({{"uri", uri}})}});
+    textured_triangle();
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(albedo(load_scene(save()), 1), glm::vec3(1.0f)) << uri;
+    EXPECT_NE(::testing::internal::GetCapturedStderr().find("counts as white"), std::string::npos);
+  }
+}
+
+TEST_F(SceneTolerance, ChunksOfAGlb) {
+  writer.triangle();
+  const auto chunk = [](const char* type, std::string content) {
+    const auto size = std::uint32_t(content.size());
+    return std::string(reinterpret_cast<const char*>(&size), 4) + std::string(type, 4) + content;
+  };
+  const auto glb = [&](const std::string& chunks) {
+    const std::uint32_t header[2] = {2, std::uint32_t(12 + chunks.size())};
+    const auto file = folder / fresh_name(".glb");
+    test::write_bytes(file, "glTF" + std::string(reinterpret_cast<const char*>(header), 8) + chunks);
+    return file;
+  };
+  const std::string json = writer.finished("x").dump();
+  Json inside = writer.finished("x");
+  inside["buffers"][0].erase("uri");
+  const std::string embedded = writer.finished("data:;base64," + test::base64(writer.bin)).dump();
+  const auto padded = [](std::string text) { return text.append((4 - text.size() % 4) % 4, ' '); };
+  const std::string own = chunk("JSON", padded(inside.dump()));
+  const std::string bin(writer.bin.begin(), writer.bin.end());
+  EXPECT_EQ(silent(glb(chunk("JSON", padded(embedded)) + chunk("BIN\0", ""))).triangle_count(), 1u);
+  EXPECT_EQ(silent(glb(chunk("JSON", padded(embedded)) + chunk("XTRA", "abcd"))).triangle_count(), 1u);
+  EXPECT_EQ(silent(glb(own + chunk("XTRA", "abcd") + chunk("BIN\0", bin))).triangle_count(), 1u);
+  EXPECT_EQ(silent(glb(own + chunk("BIN\0", bin + "a"))).triangle_count(), 1u);
+}
+
+TEST_F(SceneTolerance, CornersThatAreLeftOver) {
+  writer.mesh_node({{"attributes", {{"POSITION", writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5}, "VEC3")}}}});
+  EXPECT_EQ(repaired("not a multiple of three").triangle_count(), 1u);
+}
+
+TEST_F(SceneTolerance, ShortNormalsKeepTheirDirection) {
+  const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const int n = writer.floats({0.04f, 0, 0.03f, 0.04f, 0, 0.03f, 0.04f, 0, 0.03f}, "VEC3");
+  writer.mesh_node({{"attributes", {{"POSITION", p}, {"NORMAL", n}}}});
+  const glm::vec3 normal = silent(save()).meshes.at(0).normals[0];
+  EXPECT_NEAR(glm::distance(normal, glm::vec3(0.8f, 0.0f, 0.6f)), 0.0f, 1e-6f);
+}
+
+TEST_F(SceneTolerance, NodesAndNamesThatSayNothing) {
+  writer.triangle();
+  writer.root["nodes"][0]["rotation"] = {0, 0, 0, 0};
+  EXPECT_EQ(repaired("no unit quaternion").triangle_count(), 1u);
+  writer.root["nodes"][0].erase("rotation");
+  writer.root["nodes"][0]["name"] = nullptr;
+  EXPECT_EQ(repaired("a name is null").triangle_count(), 1u);
+  writer.root["nodes"][0].erase("name");
+  writer.root["asset"]["version"] = 2.0;
+  EXPECT_EQ(repaired("asset.version is a number").triangle_count(), 1u);
+  writer.root["asset"] = {{"version", "2.1"}, {"minVersion", "2.1"}};
+  refused(save(), "needs glTF 2.1");
+}
+
+TEST_F(SceneTolerance, CamerasThatSeeForEver) {
+  writer.triangle();
+  writer.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}, {"zfar", 3.4e38}}}});
+  writer.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.0}}}});
+  writer.root["nodes"][0]["camera"] = 0;
+  const Scene scene = silent(save());
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_LT(scene.cameras[0].zfar, 100.0f);
+  writer.root["nodes"][0]["camera"] = 1;
+  refused(save(), "camera 1");
+}
+
+TEST_F(SceneTolerance, IntegersWithoutTheWordNormalized) {
+  const int p = writer.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  const std::vector<std::uint8_t> colors{255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 255};
+  const int c = writer.accessor(colors, "VEC4", test::type_ubyte);
+  writer.mesh_node({{"attributes", {{"POSITION", p}, {"COLOR_0", c}}}});
+  EXPECT_EQ(repaired("without 'normalized'").meshes.at(0).colors[0], glm::vec4(1.0f, 0.0f, 0.2f, 1.0f));
 }
 
 }  // namespace
