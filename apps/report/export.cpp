@@ -95,7 +95,8 @@ const Verdict* Report::verdict(const std::string& scene, const std::string& ligh
 void write_csv(const Report& report, const std::filesystem::path& path) {
   constexpr const char* times[] = {"median", "min", "max"};
   constexpr const char* figures[] = {
-      "rmse_pct_denoised", "rmse_pct", "relmse", "p95_percent", "blk_pct", "ssim", "ratio", "scale", "rmse_pct_scaled"};
+      "rmse_pct_denoised", "rmse_pct", "relmse", "p95_percent", "blk_pct", "ssim", "flip", "ratio", "scale",
+      "rmse_pct_scaled"};
   std::string text = "key,scene,light,technique,varied,median_ms,min_ms,max_ms,memory_bytes";
   for (const char* figure : figures) text.append(",").append(figure);
   text += ",one_bounce_rmse_pct_denoised,error,date,command\n";

@@ -9,6 +9,7 @@
 #include "apps/volgi/metrics_json.h"
 #include "core/error.h"
 #include "reference/error_map.h"
+#include "reference/flip.h"
 
 namespace volgi::app {
 namespace {
@@ -43,7 +44,7 @@ Image scaled(Image picture, double factor) {
   return picture;
 }
 
-// The figures of `volgi compare`, and the error that is left when the best constant factor is applied.
+// The figures of `volgi compare`, FLIP among them, and the error that is left when the best constant factor is applied.
 Json figures(const Image& picture, const ReportReference& reference) {
   const Image* noise = reference.file.noise ? &*reference.file.noise : nullptr;
   const Metrics metrics = measure(reference.file.color, picture, noise, reference.mask);
@@ -51,6 +52,8 @@ Json figures(const Image& picture, const ReportReference& reference) {
   if (!metrics.relative) return json;
   const Metrics rescaled =
       measure(reference.file.color, scaled(picture, metrics.relative->scale), noise, reference.mask);
+  if (const std::optional<FlipMap> flip = flip_hdr(reference.file.color, picture))
+    json["flip"] = flip->mean(reference.mask);
   json["rmse_pct_scaled"] = rescaled.relative->rmse_pct_denoised.value_or(rescaled.relative->rmse_pct);
   return json;
 }

@@ -54,6 +54,7 @@ constexpr Column kColumns[] = {
     {"p95 [%]", "95th percentile of the relative error", VOLGI_FIGURE("metrics", "p95_percent")},
     {"blk [%]", "error of the means of 16 x 16 pixels", VOLGI_FIGURE("metrics", "blk_pct")},
     {"SSIM", "structural similarity, 1 is equal", VOLGI_FIGURE("metrics", "ssim")},
+    {"FLIP", "what an eye tells apart, 0 to 1 (HDR-FLIP, 67 pixels a degree)", VOLGI_FIGURE("metrics", "flip")},
     {"energy", "mean over the reference's mean", VOLGI_FIGURE("metrics", "ratio")},
     {"one bounce [%]", "error against the reference of one bounce",
      VOLGI_FIGURE("one_bounce_metrics", "rmse_pct_denoised")},

@@ -39,7 +39,7 @@ const answer = arguments[arguments.length - 1];
     const chart = chartOf(part);
 
     const before = plotted(part).map((item) => item.y).join();
-    for (const metric of ["blk_pct", "dssim", "rmse_pct_denoised"]) {
+    for (const metric of ["blk_pct", "flip", "dssim", "rmse_pct_denoised"]) {
       controls.metric.value = metric;
       event(controls.metric, "change");
       await pause();
