@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/report/machine.h"
@@ -78,14 +79,34 @@ void add_times(Json& point, const Rendering& rendering) {
   point["memory_bytes"] = rendering.memory_bytes ? Json(*rendering.memory_bytes) : Json();
 }
 
+/// Radiance in a PNG that a browser hands on byte by byte: on the left the mantissas, on the right the exponent of
+/// Ward's shared-exponent pixels ("Real Pixels", Graphics Gems II, 1991). To 1/256 of a pixel's largest channel.
+Image radiance_bytes(const Image& picture) {
+  Image out(2 * picture.width, picture.height);
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const glm::vec3 color = glm::max(picture.at(x, y), glm::vec3(0.0f));
+      int exponent = 0;
+      std::frexp(std::max({color.x, color.y, color.z}), &exponent);
+      if (!(std::max({color.x, color.y, color.z}) > 1e-30f)) continue;
+      const glm::vec3 mantissas = glm::min(glm::round(color * std::ldexp(1.0f, 8 - exponent)), glm::vec3(255.0f));
+      out.at(x, y) = mantissas / 255.0f;
+      out.at(picture.width + x, y) = glm::vec3(float(exponent + 128) / 255.0f);
+    }
+  }
+  return out;
+}
+
 void write_pictures(Json& point, const Image& picture, const ReportReference& reference, const fs::path& folder) {
   const std::string name = "pictures/" + point.at("key").get<std::string>();
   const float exposure = exposure_of(reference);
   fs::create_directories(folder / "pictures");
   write_png(folder / (name + ".png"), picture, exposure);
+  write_png_display(folder / (name + "-radiance.png"), radiance_bytes(picture));
   write_png_display(folder / (name + "-error.png"), error_colors(reference.file.color, picture, reference.mask));
   point["exposure_ev"] = exposure;
   point["picture"] = name + ".png";
+  point["radiance_picture"] = name + "-radiance.png";
   point["error_picture"] = name + "-error.png";
 }
 
@@ -153,6 +174,8 @@ std::string write_reference_picture(const ReportScene& scene, const std::string&
   fs::create_directories(folder / "pictures");
   std::string name = fmt::format("pictures/{}-{}.png", scene.name, light);
   write_png(folder / name, reference.file.color, exposure_of(reference));
+  write_png_display(folder / fmt::format("pictures/{}-{}-radiance.png", scene.name, light),
+                    radiance_bytes(reference.file.color));
   return name;
 }
 

@@ -35,8 +35,8 @@ nlohmann::ordered_json measure_point(const ReportScene& scene, const Setting& se
                                      const ReportReference& all_bounces, const ReportReference* one_bounce,
                                      const MeasureContext& context);
 
-/// Stops of exposure that bring a reference's mean to middle brightness; its picture is written as
-/// pictures/SCENE-LIGHT.png. @returns the name relative to the report's folder.
+/// A reference's picture as pictures/SCENE-LIGHT.png, at the exposure that brings its mean to middle brightness, and its
+/// radiance for the page's script as pictures/SCENE-LIGHT-radiance.png. @returns the name relative to the report's folder.
 std::string write_reference_picture(const ReportScene& scene, const std::string& light,
                                     const ReportReference& reference, const std::filesystem::path& folder);
 

@@ -121,26 +121,30 @@ std::string table(const Report& report, const Verdict& verdict, const std::set<s
 }
 
 std::string image(const std::filesystem::path& folder, const std::string& file, const std::string& role,
-                  const std::string& alt) {
+                  const std::string& alt, const std::string& radiance_file = {}) {
   const std::string uri = png_data_uri(folder / file);
   if (uri.empty()) return {};
-  return fmt::format("<figure><img data-role=\"{}\" src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>", role,
-                     uri, escaped(alt), escaped(alt));
+  const std::string radiance = radiance_file.empty() ? "" : png_data_uri(folder / radiance_file);
+  return fmt::format("<figure><img data-role=\"{}\"{} src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>", role,
+                     radiance.empty() ? "" : fmt::format(" data-radiance=\"{}\"", radiance), uri, escaped(alt),
+                     escaped(alt));
 }
 
 // The reference; result and error map of points on the front and of techniques at their defaults.
 std::string gallery(const Verdict& verdict, const std::set<std::string>& front, const std::filesystem::path& folder) {
-  std::string out =
-      "<div class=\"triple\">" +
-      image(folder, fmt::format("pictures/{}-{}.png", verdict.scene, verdict.light), "reference", "reference") +
-      "</div>";
+  std::string out = "<div class=\"triple\">" +
+                    image(folder, fmt::format("pictures/{}-{}.png", verdict.scene, verdict.light), "reference",
+                          "reference", fmt::format("pictures/{}-{}-radiance.png", verdict.scene, verdict.light)) +
+                    "</div>";
   for (const Judged& j : verdict.judged) {
     const Json& p = *j.point;
     if (!(j.is_default || front.contains(p["key"].get<std::string>())) || !p.contains("picture")) continue;
     out +=
-        fmt::format("<div class=\"triple\" data-key=\"{}\"{} data-label=\"{}\">{}{}</div>", p["key"].get<std::string>(),
+        fmt::format("<div class=\"triple\" data-key=\"{}\" data-exposure=\"{}\"{} data-label=\"{}\">{}{}</div>",
+                    p["key"].get<std::string>(), p.value("exposure_ev", 0.0),
                     &j == verdict.baseline ? " data-baseline" : "", escaped(j.label),
-                    image(folder, p["picture"], "result", fmt::format("{}: {} ms", j.label, figure(j.time_ms))),
+                    image(folder, p["picture"], "result", fmt::format("{}: {} ms", j.label, figure(j.time_ms)),
+                          p.value("radiance_picture", std::string())),
                     image(folder, p["error_picture"], "error", fmt::format("its error: {}", percent(j.error_percent))));
   }
   return "<details class=\"gallery\" open><summary>Pictures</summary><div class=\"pictures\">" + out +

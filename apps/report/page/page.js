@@ -146,7 +146,54 @@
 
   const element = (html) => Object.assign(document.createElement("template"), { innerHTML: html }).content.firstElementChild;
 
-  // Two pictures over one another, and a slider for where one ends.
+  // Pixels of a picture that holds radiance: mantissas on the left, exponents on the right (measure.cpp).
+  async function radianceOf(image) {
+    if (!image?.dataset.radiance) return null;
+    const packed = new Image();
+    packed.src = image.dataset.radiance;
+    await packed.decode();
+    const [width, height] = [packed.naturalWidth / 2, packed.naturalHeight];
+    const context = Object.assign(document.createElement("canvas"), { width: 2 * width, height }).getContext("2d");
+    context.drawImage(packed, 0, 0);
+    const bytes = context.getImageData(0, 0, 2 * width, height).data;
+    const pixel = (x, y) => {
+      const at = 4 * (2 * width * y + x);
+      const scale = 2 ** (bytes[at + 4 * width] - 136);
+      return [0, 1, 2].map((c) => bytes[at + c] * scale);
+    };
+    return { width, height, pixel };
+  }
+
+  // Khronos PBR Neutral, as core's tone_map().
+  function toneMapped(color) {
+    const least = Math.min(...color);
+    const offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+    const shifted = color.map((c) => c - offset);
+    const [start, desaturation] = [0.8 - 0.04, 0.15];
+    const peak = Math.max(...shifted);
+    if (peak < start) return shifted;
+    const d = 1 - start;
+    const newPeak = 1 - (d * d) / (peak + d - start);
+    const g = 1 - 1 / (desaturation * (peak - newPeak) + 1);
+    return shifted.map((c) => ((c * newPeak) / peak) * (1 - g) + newPeak * g);
+  }
+
+  const encoded = (c) => (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055);
+
+  function exposed(radiance, ev) {
+    const { width, height, pixel } = radiance;
+    const canvas = Object.assign(document.createElement("canvas"), { width, height });
+    const context = canvas.getContext("2d");
+    const out = context.createImageData(width, height);
+    for (let i = 0; i < width * height; ++i) {
+      const shown = toneMapped(pixel(i % width, Math.floor(i / width)).map((c) => c * 2 ** ev)).map(encoded);
+      out.data.set([...shown.map((c) => Math.round(255 * Math.min(Math.max(c, 0), 1))), 255], 4 * i);
+    }
+    context.putImageData(out, 0, 0);
+    return canvas.toDataURL();
+  }
+
+  // Two pictures over one another, and a slider for where one ends; exposure, zoom and the values under the pointer.
   function makeViewer(part) {
     const viewer = part.querySelector(".viewer");
     const triples = [...part.querySelectorAll(".triple[data-key]")];
@@ -155,28 +202,64 @@
     const roles = '<option value="reference">reference</option><option value="result">result</option><option value="error">error map</option>';
     viewer.append(
       element(`<div class="choices"><label>Point <select name="point"></select></label>
-        <label>Left <select name="left">${roles}</select></label><label>Right <select name="right">${roles}</select></label></div>`),
-      element('<div class="wipe"><img class="under" alt="" draggable="false"><img class="over" alt="" draggable="false"></div>'),
+        <label>Left <select name="left">${roles}</select></label><label>Right <select name="right">${roles}</select></label>
+        <label>Zoom <select name="zoom"><option value="1">1×</option><option value="2">2×</option><option value="4">4×</option><option value="8">8×</option></select></label>
+        <label>Exposure <input name="exposure" type="range" min="-6" max="6" step="0.5" value="0"> <output>0 EV</output></label></div>`),
+      element('<div class="wipe"><img class="under" alt="" draggable="false"><div class="over"><img alt="" draggable="false"></div></div>'),
+      element('<p class="values"></p>'),
       element('<input type="range" min="0" max="100" value="50" aria-label="Wipe between the left and the right picture">'));
-    const [point, left, right] = viewer.querySelectorAll("select");
+    const [point, left, right, zoom] = viewer.querySelectorAll("select");
+    const exposure = viewer.querySelector("input[name=exposure]");
+    const values = viewer.querySelector(".values");
     const [under, over] = viewer.querySelectorAll("img");
     const wipe = viewer.querySelector(".wipe");
-    const slider = viewer.querySelector("input");
+    const slider = viewer.querySelector("input:not([name])");
     for (const triple of triples) point.add(new Option(triple.dataset.label, triple.dataset.key));
     const own = triples.find((t) => "baseline" in t.dataset);
     if (own) point.value = own.dataset.key;
     right.value = "result";
     const picture = (role) => (role === "reference" ? reference
       : part.querySelector(`.triple[data-key="${point.value}"] img[data-role=${role}]`));
-    const update = () => {
+    const unpacked = new Map();
+    const radiance = (role) => {
+      const from = picture(role);
+      if (!unpacked.has(from)) unpacked.set(from, radianceOf(from));
+      return unpacked.get(from);
+    };
+    const update = async () => {
+      wipe.style.setProperty("--at", slider.value + "%");
+      const ev = Number(exposure.value);
+      const base = Number(triples.find((t) => t.dataset.key === point.value).dataset.exposure);
+      viewer.querySelector("output").textContent = `${ev > 0 ? "+" : ""}${ev} EV`;
       for (const [image, select] of [[over, left], [under, right]]) {
         const from = picture(select.value);
-        image.src = from.src;
+        const asked = `${point.value} ${select.value} ${ev}`;
+        if (image.dataset.shows === asked) continue;
+        image.dataset.shows = asked;
         image.alt = from.alt;
+        if (ev === 0) image.src = from.src;
+        const pixels = ev === 0 ? null : await radiance(select.value);
+        if (image.dataset.shows === asked && ev !== 0) image.src = pixels ? exposed(pixels, base + ev) : from.src;
       }
-      wipe.style.setProperty("--at", slider.value + "%");
+    };
+    const magnify = () => wipe.style.setProperty("--zoom", zoom.value);
+    // The zoom's fixed point is under the pointer: there the picture's place is the box's.
+    const look = async (event) => {
+      const box = wipe.getBoundingClientRect();
+      const [x, y] = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+      wipe.style.setProperty("--x", 100 * x + "%");
+      wipe.style.setProperty("--y", 100 * y + "%");
+      const [truth, ours] = await Promise.all([radiance("reference"), radiance("result")]);
+      if (!truth || !ours) return;
+      const at = [x * truth.width, y * truth.height].map(Math.floor);
+      if (at[0] < 0 || at[1] < 0 || at[0] >= truth.width || at[1] >= truth.height) return;
+      const [a, b] = [truth, ours].map((picture) => picture.pixel(...at));
+      const sum = (color) => color[0] + color[1] + color[2];
+      const off = sum(a) > 0 ? ` (${sum(b) >= sum(a) ? "+" : "−"}${figure(Math.abs(100 * (sum(b) / sum(a) - 1)))} %)` : "";
+      values.textContent = `(${at.join(", ")}) reference ${a.map(figure).join(" ")}\nresult ${b.map(figure).join(" ")}${off} W m⁻² sr⁻¹`;
     };
     const drag = (event) => {
+      look(event);
       if (event.type === "pointermove" && !event.buttons) return;
       const box = wipe.getBoundingClientRect();
       slider.value = (100 * (event.clientX - box.left)) / box.width;
@@ -184,6 +267,8 @@
     };
     for (const select of [point, left, right]) select.addEventListener("change", update);
     slider.addEventListener("input", update);
+    exposure.addEventListener("input", update);
+    zoom.addEventListener("change", magnify);
     wipe.addEventListener("pointerdown", drag);
     wipe.addEventListener("pointermove", drag);
     viewer.hidden = false;

@@ -64,18 +64,45 @@ const answer = arguments[arguments.length - 1];
 
     const viewer = part.querySelector(".viewer");
     const wipe = viewer.querySelector(".wipe");
-    const slider = viewer.querySelector("input[type=range]");
+    const slider = viewer.querySelector("input[type=range]:not([name])");
     const images = [...viewer.querySelectorAll("img")];
     check(images.every((image) => image.complete && image.naturalWidth === 48), "the viewer's pictures did not load");
     slider.value = 25;
     event(slider, "input");
     check(wipe.style.getPropertyValue("--at") === "25%", "the slider does not move the wipe");
-    check(getComputedStyle(images[1]).clipPath.includes("inset"), "the upper picture is not cut");
+    check(getComputedStyle(images[1].parentElement).clipPath.includes("inset"), "the upper picture is not cut");
     const area = wipe.getBoundingClientRect();
     check(area.width > 100 && Math.abs(area.width - area.height) < 2, `the viewer is ${area.width} x ${area.height}`);
     wipe.dispatchEvent(new PointerEvent("pointerdown", { bubbles: true, clientX: area.left + 0.75 * area.width, buttons: 1 }));
     check(Math.abs(slider.value - 75) <= 1, `dragging to 75 % gives ${slider.value}`);
-    const [point, , right] = viewer.querySelectorAll("select");
+    const pixels = (image) => {
+      const canvas = Object.assign(document.createElement("canvas"), { width: 48, height: 48 });
+      canvas.getContext("2d").drawImage(image, 0, 0);
+      return canvas.getContext("2d").getImageData(0, 0, 48, 48).data;
+    };
+    const mean = (bytes) => bytes.reduce((sum, byte, i) => sum + (i % 4 < 3 ? byte : 0), 0) / (bytes.length * 0.75);
+    const exposure = viewer.querySelector("input[name=exposure]");
+    const shown = async (ev) => {
+      exposure.value = ev;
+      event(exposure, "input");
+      for (let i = 0; i < 10; ++i) await pause();
+      await images[0].decode();
+      return mean(pixels(images[0]));
+    };
+    const [plain, brighter, darker, again] = [await shown(0), await shown(1), await shown(-1), await shown(0)];
+    exposure.step = "any";
+    const drawn = await shown(1e-6);  // by the script, of the radiance
+    check(Math.abs(drawn - plain) < 1, `the script's tone map: mean ${drawn}, not ${plain}`);
+    await shown(0);
+    check(brighter > 1.15 * plain && darker < 0.9 * plain && again === plain, `exposure: means ${[darker, plain, brighter, again]}`);
+    wipe.dispatchEvent(new PointerEvent("pointermove", { bubbles: true, clientX: area.left + 0.5 * area.width, clientY: area.top + 0.5 * area.height }));
+    for (let i = 0; i < 10; ++i) await pause();
+    const said_values = viewer.querySelector(".values").textContent;
+    check(/^\(24, 24\) reference [\d.]+ [\d.]+ [\d.]+\nresult [\d.]+ .*%\) W/.test(said_values), `under the pointer: ${said_values}`);
+    const [point, , right, zoom] = viewer.querySelectorAll("select");
+    zoom.value = "4";
+    event(zoom, "change");
+    check(images.every((image) => getComputedStyle(image).transform.startsWith("matrix(4, 0, 0, 4")), "no zoom");
     const source = images[0].src;
     right.value = "error";
     event(right, "change");
