@@ -35,8 +35,9 @@ nlohmann::ordered_json measure_point(const ReportScene& scene, const Setting& se
                                      const ReportReference& all_bounces, const ReportReference* one_bounce,
                                      const MeasureContext& context);
 
-/// A reference's picture as pictures/SCENE-LIGHT.png, at the exposure that brings its mean to middle brightness, and its
-/// radiance for the page's script as pictures/SCENE-LIGHT-radiance.png. @returns the name relative to the report's folder.
+/// A reference's picture as pictures/SCENE-LIGHT.png, at the exposure that brings its mean to middle brightness, and
+/// its radiance for the page's script as pictures/SCENE-LIGHT-radiance.png. @returns the name relative to the report's
+/// folder.
 std::string write_reference_picture(const ReportScene& scene, const std::string& light,
                                     const ReportReference& reference, const std::filesystem::path& folder);
 
