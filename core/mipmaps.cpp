@@ -96,6 +96,7 @@ void visit_mip_rows(const TextureImage& image, bool srgb, const RowPyramid::Visi
 
 std::vector<MipLevel> mip_chain(const TextureImage& image, bool srgb) {
   std::vector<MipLevel> chain;
+  chain.reserve(size_t(mip_count(image)));
   for (int level = 0; level < mip_count(image); ++level) chain.push_back(empty_level(image, level));
   visit_mip_rows(image, srgb, [&](int level, int, std::span<const glm::vec4> row) {
     auto& texels = chain[size_t(level)].texels;

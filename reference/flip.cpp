@@ -62,16 +62,16 @@ Plane filtered(const Plane& in, const Kernel& along_x, const Kernel& along_y) {
     const double* row = in.values.data() + size_t(y) * size_t(in.width);
     for (int x = 0; x < in.width; ++x) {
       double sum = 0.0;
-      for (int k = -r; k <= r; ++k) sum += along_x[size_t(k + r)] * row[std::clamp(x + k, 0, in.width - 1)];
+      for (int k = 0; k <= 2 * r; ++k) sum += along_x[size_t(k)] * row[std::clamp(x + k - r, 0, in.width - 1)];
       across.values[size_t(y) * size_t(in.width) + size_t(x)] = sum;
     }
   });
   tbb::parallel_for(0, in.height, [&](int y) {
     for (int x = 0; x < in.width; ++x) {
       double sum = 0.0;
-      for (int k = -r; k <= r; ++k)
-        sum += along_y[size_t(k + r)] *
-               across.values[size_t(std::clamp(y + k, 0, in.height - 1)) * size_t(in.width) + size_t(x)];
+      for (int k = 0; k <= 2 * r; ++k)
+        sum += along_y[size_t(k)] *
+               across.values[size_t(std::clamp(y + k - r, 0, in.height - 1)) * size_t(in.width) + size_t(x)];
       out.values[size_t(y) * size_t(in.width) + size_t(x)] = sum;
     }
   });

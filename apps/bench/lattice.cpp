@@ -164,13 +164,13 @@ nlohmann::json maps_table(const Scene& scene, const gl::Context& context, const 
   render_in_turn({&imperfect, &regular}, options.frames);
   const double imperfect_ms = imperfect.passes_ms({screen::ImperfectMaps::name});
   const double regular_ms = regular.passes_ms({screen::ParaboloidDepthMaps::name});
-  const nlohmann::json result = {{"scene", scene.name},
-                                 {"triangles", scene.triangle_count()},
-                                 {"lights", lights},
-                                 {"texels", texels},
-                                 {"imperfect_ms", imperfect_ms},
-                                 {"regular_ms", regular_ms},
-                                 {"ratio", imperfect_ms / regular_ms}};
+  nlohmann::json result = {{"scene", scene.name},
+                           {"triangles", scene.triangle_count()},
+                           {"lights", lights},
+                           {"texels", texels},
+                           {"imperfect_ms", imperfect_ms},
+                           {"regular_ms", regular_ms},
+                           {"ratio", imperfect_ms / regular_ms}};
   show(fmt::format("{}, {} triangles, {} maps of {} x {}: imperfect {:.0f} ms, regular {:.0f} ms, ratio {:.3f}\n",
                    scene.name, scene.triangle_count(), lights, texels, texels, imperfect_ms, regular_ms,
                    imperfect_ms / regular_ms));

@@ -156,7 +156,6 @@ class Session {
   std::optional<size_t> file_camera_;
   std::string camera_arguments_;
   bool playing_ = false;
-  double next_time_s_ = 0.0;
   bool restart_ = true;  // of the average
   glm::ivec2 asked_size_{0};
   std::optional<Error> failure_;
