@@ -1,5 +1,6 @@
 #include "apps/volgi/failure.h"
 
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -21,6 +22,14 @@ int say_failure() {
     std::cerr << "volgi: " << e.what() << '\n';
     return int(ExitCode::bad_input);
   }
+}
+
+int with_output_written(int code) {
+  std::cout.flush();
+  const bool written = std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || code != int(ExitCode::done)) return code;
+  std::cerr << "volgi: cannot write to the standard output\n";
+  return int(ExitCode::cannot_write);
 }
 
 }  // namespace volgi::app

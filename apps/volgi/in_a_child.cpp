@@ -21,11 +21,10 @@ namespace {
 [[noreturn]] void answer(const std::function<int()>& work) {
   int code = 0;
   try {
-    code = work();
+    code = with_output_written(work());
   } catch (...) {
     code = say_failure();
   }
-  std::cout.flush();
   std::fflush(nullptr);
   _exit(code);
 }

@@ -50,5 +50,5 @@ int main(int argc, char** argv) {
   } catch (...) {
     return app::say_failure();
   }
-  return exit_code;
+  return app::with_output_written(exit_code);
 }

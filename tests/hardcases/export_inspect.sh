@@ -31,6 +31,9 @@ says 'wrote a.nvdb: 9 grids'
 must "$volgi" inspect a.vdb
 says '^occupancy \[1\]' '^emission \[W m\^-2\]' '^fluence \[W m\^-2\]' '^sh_1m1 \[W m\^-2 sr\^-1\]' 'scheme +ordinates' \
   'world box +-1,0,-1 ... 1,2,1 m' '16 x 16 x 16 cells of 0.125 m'
+"$volgi" inspect a.vdb > /dev/full 2> full.txt
+code=$?
+((code == 6)) && grep -q 'standard output' full.txt || fail "a full disk under inspect: exit code $code"
 must "$volgi" inspect a.vdb --diagnose
 says '^fluence: OK, [0-9]+ active cells' '^OK$'
 must "$volgi" inspect a.vdb --grid occupancy --histogram 4
