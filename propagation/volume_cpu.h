@@ -13,7 +13,7 @@ namespace volgi {
 
 /// The volume subsystem on the CPU, without any GL: voxelization, propagation, irradiance per side, each apart for
 /// timers. Light comes as SideFlux from whoever has it: of lamps and emissive surfaces
-/// propagation/light_in/direct_light_cpu.h, of virtual lights propagation/light_in/side_gather_cpu.h.
+/// propagation/light_in/direct_light_cpu.h, of virtual lights propagation/light_in/reflected_flux_cpu.h.
 class VolumeCpu {
  public:
   /// @param scene  must outlive the volume.

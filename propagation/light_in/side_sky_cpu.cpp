@@ -3,10 +3,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <limits>
 
-#include "propagation/light_in/side_gather_cpu.h"
 #include "propagation/light_in/side_start_internal.h"
 
 namespace volgi {
@@ -18,7 +18,7 @@ glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size
   const SideStart start = start_of_side(voxels, embree, side);
   const glm::ivec3 cell = shared::cell_coord(voxels.grid(), side.cell);
   glm::vec3 sum(0.0f);
-  for (size_t k = size_t(first_light_of_side(cell, side.face, stride, sample)); k < parts.size(); k += size_t(stride)) {
+  for (size_t k = size_t(first_part_of_side(cell, side.face, stride, sample)); k < parts.size(); k += size_t(stride)) {
     const glm::vec3 towards = -parts[k].direction;
     const float cosine = glm::dot(towards, side.normal);
     if (cosine <= 0.0f) continue;
@@ -49,10 +49,14 @@ const std::vector<glm::vec4>& SideSkyCpu::irradiance(const VoxelGrid& voxels, co
   return irradiance_;
 }
 
+// E is that of the surface's plane, so A is the side's own area, however it is tilted (docs/theory.md#light-in).
 void add_sky(const VoxelGrid& voxels, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux) {
-  const std::vector<glm::vec4> reflected = reflected_flux(voxels, irradiance);
+  assert(irradiance.size() == voxels.side_count());
   std::vector<glm::vec4>& into = apart ? flux.emitted : flux.punctual;
-  for (size_t s = 0; s < reflected.size(); ++s) into[s] += reflected[s];
+  for (size_t s = 0; s < irradiance.size(); ++s) {
+    const shared::Side& side = voxels.sides()[s];
+    into[s] += glm::vec4(glm::vec3(irradiance[s]) * side.albedo * side.area_m2, 0.0f);
+  }
   if (apart) flux.emits = true;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 #include <vector>
@@ -9,6 +10,16 @@
 #include "voxel/voxel_grid.h"
 
 namespace volgi {
+
+/// Which of every `stride` parts of the sky a side takes: 0 ... stride - 1. An additive recurrence over the cells
+/// (Roberts 2018: powers of 1/1.2207..., in units of 2^-32) and the faces, so that sides beside each other take
+/// different parts and their mean knows most of them, whatever order sides are in.
+/// @param sample  of pictures that are averaged (core/sample_sequence.h): in `stride` of them a side takes each once.
+inline int first_part_of_side(glm::ivec3 cell, int face, int stride, int sample = 0) {
+  const std::uint32_t place = 3518319155u * std::uint32_t(cell.x) + 2882110345u * std::uint32_t(cell.y) +
+                              2360945575u * std::uint32_t(cell.z) + 2654435769u * std::uint32_t(face);
+  return int(((std::uint64_t(place) * std::uint64_t(stride) >> 32) + std::uint64_t(sample)) % std::uint64_t(stride));
+}
 
 /// Sky light on a volume's sides after a screen that carries its arrival: as long as neither sides nor parts change,
 /// what was found is kept. Twin: screen/sources/sky/side_sky_gl.h, with the maps of pixels.

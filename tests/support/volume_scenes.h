@@ -57,6 +57,19 @@ inline void add_box_inside(Scene& scene, int material, glm::vec3 centre, glm::ve
   }
 }
 
+/// A body along the axes, seen from outside.
+inline void add_box(Scene& scene, int material, glm::vec3 centre, glm::vec3 half) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float sign : {-1.0f, 1.0f}) {
+      glm::vec3 n(0.0f), a(0.0f), b(0.0f);
+      n[axis] = sign * half[axis];
+      a[(axis + 1) % 3] = sign * half[(axis + 1) % 3];
+      b[(axis + 2) % 3] = half[(axis + 2) % 3];
+      add_quad(scene, material, centre + n - a - b, 2.0f * a, 2.0f * b);
+    }
+  }
+}
+
 /// Latitude-longitude sphere of 4 rings^2 triangles, fronts inwards, vertices at `radius`.
 inline Mesh& add_sphere_inside(Scene& scene, int material, glm::vec3 centre, float radius, int rings) {
   Mesh mesh;

@@ -7,7 +7,7 @@
 #include "propagation/volume_options.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/reflective_shadow_map.h"
-#include "screen/bounces/volume/side_gather_gl.h"
+#include "screen/bounces/volume/reflected_flux_gl.h"
 
 namespace volgi::screen {
 

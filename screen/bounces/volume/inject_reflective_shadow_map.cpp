@@ -1,31 +1,9 @@
 #include "screen/bounces/volume/inject_reflective_shadow_map.h"
 
-#include <algorithm>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
-
+#include "screen/bounces/volume/largest_power.h"
 #include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
-
-namespace {
-
-/// No light sends more than this into its map [W], largest band, up to what few texels get wrong: the fixed-point sums
-/// are shares of it.
-float largest_power(const Light& light, glm::vec3 bounds_min, glm::vec3 bounds_max) {
-  float intensity = std::max({light.intensity.x, light.intensity.y, light.intensity.z});
-  // A sun's layer covers the bounds seen from any direction: at most the square on their diagonal, with some margin.
-  if (light.type == Light::Type::directional) {
-    glm::vec3 d = bounds_max - bounds_min;
-    return 2.0f * intensity * glm::dot(d, d);
-  }
-  // Of a cone: 2 pi (1 - cos) without its cancellation.
-  const float half_angle = light.type == Light::Type::spot ? light.outer_cone_rad : glm::pi<float>();
-  const float s = std::sin(0.5f * half_angle);
-  return 4.0f * glm::pi<float>() * s * s * intensity;
-}
-
-}  // namespace
 
 InjectReflectiveShadowMap::InjectReflectiveShadowMap()
     : program_(gl::Program::compute("screen/bounces/volume/inject_reflective_shadow_map.comp.glsl")) {}

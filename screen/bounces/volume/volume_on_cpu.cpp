@@ -4,7 +4,7 @@
 
 #include "core/gl/readback.h"
 #include "propagation/light_in/direct_light_cpu.h"
-#include "propagation/light_in/side_gather_cpu.h"
+#include "propagation/light_in/reflected_flux_cpu.h"
 #include "propagation/light_in/side_sky_cpu.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
@@ -40,14 +40,13 @@ class LightsOnHost {
       copy(subdivision->sublights(), size_t(lights.count()) * SUBLIGHTS_PER_LIGHT * sizeof(shared::SubLight),
            sublights_copy_);
   }
-  /// begin() comes first. @param near_zone  of the subdivision.
+  /// begin() comes first.
   const VirtualLightsForSides& end(const VirtualLightListGl& lights, const VirtualLightSubdivision* subdivision,
-                                   float near_zone, int sample) {
+                                   int sample) {
     const auto count = size_t(lights.count());
     fetch(lights_copy_, count, host_.lights);
     host_.reflected = lights.reflected;
     host_.sublights.clear();
-    host_.near_zone = near_zone;
     host_.sample = sample;
     if (subdivision != nullptr) fetch(sublights_copy_, count * SUBLIGHTS_PER_LIGHT, host_.sublights);
     return host_;
@@ -194,7 +193,7 @@ class SidesOnCpu : public FrameVolume {
   SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
-        lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->near_zone, first_bounce->sample);
+        lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->sample);
     const bool apart = first_is_apart();
     SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart);
     if (const SkyMaps* sky = first_bounce->sky)

@@ -48,8 +48,8 @@ class LitVoxels {
   void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
     voxelize(buffers, timer);
     flux_.begin(voxels());
-    if (!side_gather_) side_gather_ = std::make_unique<SideGatherGl>(first_bounce.clusters.shadow);
-    side_gather_->run(voxels(), first_bounce, flux_, timer);
+    if (!reflected_flux_) reflected_flux_ = std::make_unique<ReflectedFluxGl>();
+    reflected_flux_->run(voxels(), scene_, first_bounce, flux_, timer);
     if (first_bounce.sky == nullptr) return;
     if (!side_sky_) side_sky_ = std::make_unique<SideSkyGl>();
     side_sky_->run(voxels(), *first_bounce.sky, flux_, timer, first_bounce.sample);
@@ -100,7 +100,7 @@ class LitVoxels {
   SideFluxGl flux_;
   InjectReflectiveShadowMap inject_;
   std::vector<FluxSample> emitters_;
-  std::unique_ptr<SideGatherGl> side_gather_;
+  std::unique_ptr<ReflectedFluxGl> reflected_flux_;  // after a first bounce
   std::unique_ptr<SideSkyGl> side_sky_;
 };
 

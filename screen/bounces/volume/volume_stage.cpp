@@ -97,7 +97,7 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
                 "orders: --scheme ordinates or conservative");
   bounce_rules(o, 0.5f);
   LightPaths paths{punctual_higher, emission_first, emission_higher, sky_higher};
-  StageRole r{.needs = {product<VirtualLightListGl>(), product<LightClusters>()}, .uses = {product<SmoothGather>()}};
+  StageRole r{.needs = {product<VirtualLightListGl>()}, .uses = {product<SmoothGather>()}};
   if (!sky_goes_by_lights(options)) {
     r.uses.push_back(product<SkyMaps>());
     paths = paths | LightPaths{sky_first};
@@ -138,7 +138,6 @@ class VolumeStage : public Stage {
         after_first_bounce_(source == VolumeOptions::Source::first_bounce),
         takes_sky_(after_first_bounce_ && !sky_goes_by_lights(context.options)) {
     options_.source = source;
-    if (lights_are_subdivided(context.options)) near_zone_ = context.options.of<ResampleOptions>().near_zone;
     make();
     warn_of_mixed_light(context);
   }
@@ -150,13 +149,8 @@ class VolumeStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     frame.lend(*volume_);
     if (after_first_bounce_) {
-      const FirstBounce first{frame.get<VirtualLightListGl>(),
-                              frame.get<LightClusters>(),
-                              frame.find<VirtualLightSubdivision>(),
-                              near_zone_,
-                              takes_sky_ ? frame.find<SkyMaps>() : nullptr,
-                              frame.sample,
-                              frame.find<SmoothGather>()};
+      const FirstBounce first{frame.get<VirtualLightListGl>(), frame.find<VirtualLightSubdivision>(),
+                              takes_sky_ ? frame.find<SkyMaps>() : nullptr, frame.sample, frame.find<SmoothGather>()};
       volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, &first, timer);
       // What reaches surfaces from emission, or from sky that sides have received, has been reflected before.
       const LightPaths first_paths = takes_sky_ ? LightPaths{emission_first, sky_first} : LightPaths{emission_first};
@@ -218,7 +212,6 @@ class VolumeStage : public Stage {
   glm::ivec2 size_;
   VolumeOptions options_;
   bool on_gpu_, after_first_bounce_, takes_sky_;
-  float near_zone_ = 0.0f;
   std::unique_ptr<FrameVolume> volume_;
 };
 

@@ -3,11 +3,7 @@
 #define VOLGI_VOLUME_SLOTS_SHARED_H
 #include "screen/base/gbuffer.shared.h"
 
-// The side gather.
-#define GATHERED_EMITTED_SLOT 6
-#define GATHERED_PUNCTUAL_SLOT 7
-#define SIDE_SUBLIGHTS_SLOT 8
-#define SIDE_NEAR_LIGHTS_SLOT 9
+#define SENDERS_SLOT 8  // of reflected_flux
 
 // The volume gather, of listed pixels.
 #define GATHERED_INDIRECT_IMAGE 0

@@ -13,7 +13,7 @@ layout(std430, binding = SKY_FLUX_SLOT) buffer Flux { vec4 flux[]; };
 uniform int stride;
 uniform int sample_index;  // of the pictures that are averaged
 
-// As first_light_of_side() of propagation/light_in/side_gather_cpu.h.
+// As first_part_of_side() of propagation/light_in/side_sky_cpu.h.
 int first_of_side(ivec3 cell, int face) {
   uint place = 3518319155u * uint(cell.x) + 2882110345u * uint(cell.y) + 2360945575u * uint(cell.z) +
                2654435769u * uint(face);
