@@ -2,7 +2,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from . import animal, arena, atrium, room, small
+from . import animal, arena, atrium, buildings, room, small
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,9 @@ SCENES = {
     'arena': Entry(arena.arena, (9500, 10500), 512, committed=False),
     'atrium': Entry(atrium.atrium, (65000, 67000), 512, committed=False),
     'atrium_detail': Entry(lambda: atrium.atrium(detail=True), (97000, 99000), 512, committed=False),
+    'house': Entry(buildings.house, _exactly(4190), 4096, committed=False),
+    'office': Entry(buildings.office, _exactly(1218), 512, committed=False),
+    'steps': Entry(buildings.steps, _exactly(2400), 512, committed=False),
     'bunny': Entry(animal.bunny, _exactly(69462), 1024, committed=False, one_bounce_spp=1024),
     'animal17k': Entry(animal.animal17k, _exactly(16998), 512, committed=False),
 }
