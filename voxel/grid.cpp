@@ -36,7 +36,7 @@ Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift
   return grid;
 }
 
-int automatic_grid_cells(const Scene& scene) {
+int grid_cells_by_size(const Scene& scene) {
   constexpr int LEAST = 48, MOST = 128, STEP = 8;
   constexpr double LONGEST_M = 0.3;
   constexpr size_t MOST_CELLS = size_t(1) << 17;

@@ -15,9 +15,9 @@ using shared::Grid;
 /// @throws Error(usage) when N < 1; Error(bad_input) when the scene has no triangles.
 Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells = glm::vec3(0.0f));
 
-/// Cells along the longest axis that suit a scene, where nobody asks for a number: 48, and more of them where they
-/// would be longer than 0.3 m, what a pillar is; 128 at most, and no more than 2^17 in all.
-int automatic_grid_cells(const Scene& scene);
+/// Cells along the longest axis for a scene of this size: 48, and more of them where they would be longer than 0.3 m,
+/// what a pillar is; 128 at most, and no more than 2^17 in all.
+int grid_cells_by_size(const Scene& scene);
 
 inline bool same_grid(const Grid& a, const Grid& b) {
   return a.cells == b.cells && a.origin == b.origin && a.cell_size_m == b.cell_size_m;

@@ -7,7 +7,7 @@
 #include "core/log.h"
 #include "core/sky.h"
 #include "core/visibility/room_camera.h"
-#include "voxel/grid.h"
+#include "propagation/light_in/automatic_grid.h"
 
 namespace volgi::demo {
 

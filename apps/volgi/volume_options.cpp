@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "core/error.h"
-#include "voxel/grid.h"
+#include "propagation/light_in/automatic_grid.h"
 
 namespace volgi::app {
 
@@ -53,7 +53,8 @@ const char* scheme_name(Scheme scheme) {
 void VolumeCommandOptions::add_to(CLI::App& command) {
   command
       .add_option("--grid", grid_cells,
-                  "cells along the longest axis of the scene (48, more where they would exceed 0.3 m)")
+                  "cells along the longest axis of the scene (by the scene: 48, more where they would exceed 0.3 m, "
+                  "short ways of light or gaps that it passes)")
       ->check(CLI::Range(1, VolumeOptions::kMaxGridCells));
   command.add_option("--scheme", scheme, "how the volume propagates light")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))

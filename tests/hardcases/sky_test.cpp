@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/sky.h"
+#include "propagation/light_in/automatic_grid.h"
 #include "reference/path_tracer.h"
 #include "reference/picture_files.h"
 #include "screen/sources/sky/sky_maps.h"
@@ -13,7 +14,6 @@
 #include "tests/support/gl_test.h"
 #include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
-#include "voxel/grid.h"
 
 namespace volgi::test {
 namespace {

@@ -1,0 +1,48 @@
+#include "propagation/light_in/automatic_grid.h"
+
+#include <algorithm>
+
+#include "core/visibility/virtual_lights_cpu.h"
+#include "propagation/light_in/reflected_flux_cpu.h"
+#include "voxel/passages.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr int MOST = 256, STEP = 8;
+constexpr size_t MOST_CELLS = size_t(1) << 20;
+constexpr double SHORT_FLIGHTS = 0.03;  // of all power
+constexpr int LIGHTS = 4096;
+constexpr size_t RAYS = size_t(1) << 14;
+
+std::vector<Flight> flights_of(const Scene& scene) {
+  const EmitterPoints emitters(scene);
+  if (scene.lights.empty() && emitters.empty()) return {};
+  const EmbreeScene embree(scene);
+  const VirtualLightsCpu lights = virtual_lights_cpu(embree, emitters, LIGHTS, true);
+  return flights(embree, {lights.lights, lights.reflected, {}, 0}, RAYS);
+}
+
+double short_flights(const std::vector<Flight>& flights, float cell_size_m) {
+  double all = 0.0, near = 0.0;
+  for (const Flight& f : flights) {
+    all += double(f.power);
+    if (f.length_m < cell_size_m) near += double(f.power);
+  }
+  return all > 0.0 ? near / all : 0.0;
+}
+
+bool fits(const Scene& scene, int cells) { return cells <= MOST && cell_count(make_grid(scene, cells)) <= MOST_CELLS; }
+
+}  // namespace
+
+int automatic_grid_cells(const Scene& scene) {
+  int cells = grid_cells_by_size(scene);
+  const std::vector<Flight> flights = flights_of(scene);
+  while (fits(scene, cells + STEP) && short_flights(flights, make_grid(scene, cells).cell_size_m) > SHORT_FLIGHTS)
+    cells += STEP;
+  return std::min(cells_that_keep_passages(scene, cells, MOST_CELLS), MOST);
+}
+
+}  // namespace volgi

@@ -1,0 +1,15 @@
+#pragma once
+#include "core/scene.h"
+
+namespace volgi {
+
+/// Cells along the longest axis that suit a scene, where nobody asks for a number: those of its size
+/// (grid_cells_by_size), and more until
+/// - under 3 % of the light that leaves lit and emissive surfaces meets another one nearer than a cell: what flies
+///   shorter the volume does not carry right. Steps, a lamp's slit under the ceiling;
+/// - what air joins is joined by cells, through doors ajar (voxel/passages.h);
+/// with 256 along an axis, and 2^20 in all, at most. Cost: 2^14 rays, and what passages.h says; once for a scene.
+/// @throws Error as make_grid.
+int automatic_grid_cells(const Scene& scene);
+
+}  // namespace volgi
