@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_precision.hpp>
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -143,6 +144,12 @@ class TextureTable {
 };
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);
+
+// --- image_light.cpp
+/// EXT_lights_image_based of the scene that is read; null where it has none. Irradiance of an unobstructed surface is
+/// what its coefficients say, to the bands they have; what is seen, and what casts shadows, are its sharpest pictures,
+/// turned over as those of most agreement with the coefficients.
+std::shared_ptr<const Sky> read_image_light(const Document& document);
 
 // --- transmission.cpp
 /// KHR_materials_transmission on a material that is otherwise read: light passes straight on, as through a hole, as
