@@ -16,7 +16,8 @@ using shared::Grid;
 Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells = glm::vec3(0.0f));
 
 /// Cells along the longest axis that suit a scene, where nobody asks for a number: 48, and more of them where they
-/// would be longer than 0.3 m, what a pillar is; 128 at most, and no more than 2^17 in all.
+/// would be longer than 0.3 m, what a pillar is; 128 at most, and no more than 2^17 in all. Twice as many of both for
+/// what stands on open ground (core/scene_detail.h).
 int automatic_grid_cells(const Scene& scene);
 
 inline bool same_grid(const Grid& a, const Grid& b) {

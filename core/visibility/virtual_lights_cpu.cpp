@@ -123,7 +123,7 @@ VirtualLightsCpu make_lights(const EmbreeScene& embree, const EmitterPoints& emi
 VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
                                     bool along_curve) {
   assert(count >= 1);
-  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count), along_curve);
+  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count, false), along_curve);
 }
 
 }  // namespace volgi
