@@ -80,7 +80,7 @@ VirtualLight end_of(const EmbreeScene& embree, const LightRay& ray, int source, 
   const float squared = sun ? 1.0f : hit.distance * hit.distance;
   const float area_m2 = ray.measure * squared / std::max(std::abs(slope), kMinCosine);
   const glm::vec3 normal = slope < 0.0f ? at.geometric_normal : -at.geometric_normal;
-  return {at.position, area_m2, normal, VIRTUAL_LIGHT_REFLECTED, ray.power * window * at.albedo, source};
+  return {at.position, area_m2, normal, VIRTUAL_LIGHT_REFLECTED, ray.power * window * at.albedo * hit.tint, source};
 }
 
 std::vector<LightRay> rays_of(const Scene& scene, const Light& light, int count) {

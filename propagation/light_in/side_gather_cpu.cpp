@@ -97,7 +97,7 @@ class Gather {
       // Peaks near a light are its sub-lights'.
       if (sublights_.empty()) light.area_m2 += std::min(float(stride_ - 1) * light.area_m2, side.area_m2);
       const glm::vec3 own = share * irradiance_of(side, start, light);
-      if (own != glm::vec3(0.0f) && !hidden(start, light_ends_[k], seed + std::uint32_t(k))) sum += own;
+      if (own != glm::vec3(0.0f)) sum += own * passed(start, light_ends_[k], seed + std::uint32_t(k));
     }
     return sum * float(stride_);
   }
@@ -126,7 +126,7 @@ class Gather {
       }
       if (own == glm::vec3(0.0f)) continue;
       const glm::vec3 end = coarse_ends_[light * COARSE_SUBLIGHTS + coarse];
-      if (!hidden(start, end, seed + std::uint32_t(light))) sum += own;
+      sum += own * passed(start, end, seed + std::uint32_t(light));
     }
     return near * sum;
   }
@@ -145,10 +145,11 @@ class Gather {
   }
   /// Of rays to a light: beside its surface.
   glm::vec3 end_of(const Disk& light) const { return embree_.leaving_point(light.position, -light.normal, FAR); }
-  bool hidden(const SideStart& start, glm::vec3 end, std::uint32_t seed) const {
+  glm::vec3 passed(const SideStart& start, glm::vec3 end, std::uint32_t seed) const {
     const glm::vec3 way = end - start.origin;
     const float distance = glm::length(way);
-    return distance > 0.0f && embree_.occluded({start.origin, way / distance, distance, seed, start.from, {}});
+    if (!(distance > 0.0f)) return glm::vec3(1.0f);
+    return embree_.passed({start.origin, way / distance, distance, seed, start.from, {}});
   }
 
   const EmbreeScene& embree_;
