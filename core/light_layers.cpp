@@ -41,19 +41,23 @@ ReflectiveShadowLayer perspective_layer(glm::vec3 origin, glm::vec3 forward, flo
   return layer;
 }
 
-ReflectiveShadowLayer directional_layer(glm::vec3 direction, int resolution, glm::vec3 bounds_min,
-                                        glm::vec3 bounds_max) {
+/// Half of what a box is wide along an axis. A flat or empty one still gets some.
+float half_width(const SceneBox& box, glm::vec3 axis) {
+  const glm::vec3 half = 0.5f * (box.max - box.min);
+  const float least = std::max({1e-3f * glm::length(half), 1e-6f * glm::length(box.middle()), 1e-20f});
+  return std::max(glm::dot(glm::abs(axis), half), least);
+}
+
+/// As wide as `across` is, and as deep as `all`.
+ReflectiveShadowLayer directional_layer(glm::vec3 direction, int resolution, const SceneBox& across,
+                                        const SceneBox& all) {
   ReflectiveShadowLayer layer{};
   set_axes(layer, direction);
-  const glm::vec3 middle = 0.5f * (bounds_min + bounds_max);
-  const glm::vec3 half = 0.5f * (bounds_max - bounds_min);
-  // A flat or empty scene still gets a box with volume.
-  const float min_half_width = std::max({1e-3f * glm::length(half), 1e-6f * glm::length(middle), 1e-20f});
-  const auto half_width = [&](glm::vec3 axis) { return std::max(glm::dot(glm::abs(axis), half), min_half_width); };
-  layer.extent_x = half_width(layer.right) * margin_factor(resolution);
-  layer.extent_y = half_width(layer.up) * margin_factor(resolution);
-  const float reach = half_width(direction) * 1.01f;  // nothing is clipped for a rounding error
-  layer.origin = middle - reach * direction;
+  const glm::vec3 middle = across.middle();
+  layer.extent_x = half_width(across, layer.right) * margin_factor(resolution);
+  layer.extent_y = half_width(across, layer.up) * margin_factor(resolution);
+  const float reach = half_width(all, direction) * 1.01f;  // nothing is clipped for a rounding error
+  layer.origin = middle + (glm::dot(all.middle() - middle, direction) - reach) * direction;
   layer.depth_scale_m = 2.0f * reach;
   layer.directional = 1;
   const glm::vec4 z = plane(direction, layer.origin) / layer.depth_scale_m;
@@ -71,7 +75,8 @@ std::vector<ReflectiveShadowLayer> reflective_shadow_layers(const Light& light, 
                                                             glm::vec3 bounds_max) {
   assert(resolution > 2 * RSM_MARGIN_TEXELS);
   if (light.type == Light::Type::directional) {
-    return {directional_layer(light.direction, resolution, bounds_min, bounds_max)};
+    const SceneBox bounds{bounds_min, bounds_max};
+    return {directional_layer(light.direction, resolution, bounds, bounds)};
   }
   // Relative precision of depth is the same at all distances (no far plane), so the near plane may lie very close.
   const float near_m = std::max(1e-5f * glm::distance(bounds_min, bounds_max), 1e-20f);
@@ -86,6 +91,11 @@ std::vector<ReflectiveShadowLayer> reflective_shadow_layers(const Light& light, 
     faces.push_back(perspective_layer(light.position, forward, margin_factor(resolution), near_m));
   }
   return faces;
+}
+
+ReflectiveShadowLayer layer_across(glm::vec3 direction, int resolution, const SceneBox& across, const SceneBox& all) {
+  assert(resolution > 2 * RSM_MARGIN_TEXELS);
+  return directional_layer(direction, resolution, across, all);
 }
 
 }  // namespace volgi

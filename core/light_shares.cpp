@@ -35,12 +35,51 @@ double power_of_sky(const Scene& scene) {
 }
 
 /// Power of all sources, the sky and emissive surfaces last.
-std::vector<double> power_of_sources(const Scene& scene, glm::dvec3 emitted_flux) {
+std::vector<double> power_of_sources(const Scene& scene, glm::dvec3 emitted_flux, bool with_sky) {
   std::vector<double> power;
   for (const Light& light : scene.lights) power.push_back(power_luminance(light, scene.bounds_min, scene.bounds_max));
-  power.push_back(power_of_sky(scene));
+  power.push_back(with_sky ? power_of_sky(scene) : 0.0);
   power.push_back(luminance(emitted_flux));
   return power;
+}
+
+/// Of a source by its place in power_of_sources().
+bool from_outside(const Scene& scene, size_t i) {
+  const size_t sky = scene.lights.size();
+  return i == sky || (i < sky && scene.lights[i].type == Light::Type::directional);
+}
+
+struct Kinds {
+  double outside = 0.0, within = 0.0;
+};
+Kinds kinds_of(const Scene& scene, const std::vector<double>& power) {
+  Kinds sum;
+  for (size_t i = 0; i < power.size(); ++i) (from_outside(scene, i) ? sum.outside : sum.within) += power[i];
+  return sum;
+}
+
+/// What comes from outside has no more than what is within, where there is anything.
+void bound_by_what_is_within(const Scene& scene, std::vector<double>& power) {
+  const Kinds sum = kinds_of(scene, power);
+  if (!(sum.within > 0.0) || sum.outside <= sum.within) return;
+  for (size_t i = 0; i < power.size(); ++i)
+    if (from_outside(scene, i)) power[i] *= sum.within / sum.outside;
+}
+
+/// As if emissive textures were white.
+glm::dvec3 emitted_at_most(const Scene& scene) {
+  glm::dvec3 flux(0.0);
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& m = scene.materials[size_t(mesh.material)];
+    if (!m.is_emissive()) continue;
+    double area = 0.0;
+    for (const glm::uvec3& t : mesh.triangles) {
+      const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+      area += 0.5 * glm::length(glm::cross(b - a, c - a));
+    }
+    flux += glm::pi<double>() * area * (m.double_sided ? 2.0 : 1.0) * glm::dvec3(m.emissive_radiance);
+  }
+  return flux;
 }
 
 LightShares from_counts(std::vector<int> counts) {
@@ -108,13 +147,21 @@ std::vector<int> share_out(const std::vector<double>& power, int count) {
   return share;
 }
 
-LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count) {
-  return from_counts(share_out(power_of_sources(scene, emitted_flux), count));
+LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count, bool with_sky) {
+  std::vector<double> power = power_of_sources(scene, emitted_flux, with_sky);
+  bound_by_what_is_within(scene, power);
+  return from_counts(share_out(power, count));
 }
 
-LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each) {
+double share_within(const Scene& scene) {
+  const Kinds sum = kinds_of(scene, power_of_sources(scene, emitted_at_most(scene), true));
+  const double less = std::min(sum.outside, sum.within), more = std::max(sum.outside, sum.within);
+  return less > 0.0 ? less / more : 1.0;
+}
+
+LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each, bool with_sky) {
   std::vector<int> counts;
-  for (const double power : power_of_sources(scene, emitted_flux)) counts.push_back(power > 0.0 ? each : 0);
+  for (const double power : power_of_sources(scene, emitted_flux, with_sky)) counts.push_back(power > 0.0 ? each : 0);
   return from_counts(counts);
 }
 

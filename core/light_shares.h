@@ -25,10 +25,14 @@ double power_luminance(const Light& light, glm::vec3 bounds_min, glm::vec3 bound
 std::vector<int> share_out(const std::vector<double>& power, int count);
 
 /// Shares by the luminance of what sources send. That does not ask what light falls on, so shares stay while lights
-/// move; only a sun that turns sees another rectangle.
-/// @param emitted_flux  power of all emissive surfaces together [W].
-LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count);
+/// move; only a sun that turns sees another rectangle. Suns and sky together get no more than lamps and emissive
+/// surfaces do: theirs grows with the ground around a house, of which nobody in it sees anything.
+/// @param emitted_flux  power of all emissive surfaces together [W]. @param with_sky  the sky is a source.
+LightShares share_by_power(const Scene& scene, glm::dvec3 emitted_flux, int count, bool with_sky = true);
+/// What lamps and emissive surfaces send over what suns and the sky do, or the other way round: at most 1, which it is
+/// where there is only one of the two kinds. Emissive textures count as white.
+double share_within(const Scene& scene);
 /// `each` for every source that sends anything.
-LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each);
+LightShares share_equally(const Scene& scene, glm::dvec3 emitted_flux, int each, bool with_sky = true);
 
 }  // namespace volgi

@@ -49,6 +49,7 @@ struct SceneFile::Data {
   std::vector<gltf::Channel> channels;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
+  std::shared_ptr<const Sky> sky;
 
   explicit Data(const gltf::Document& document);
   Scene still() const;
@@ -68,6 +69,7 @@ SceneFile::Data::Data(const gltf::Document& document) : path(document.path) {
   materials = gltf::read_materials(document);
   lights = gltf::read_lights(document);
   cameras = gltf::read_cameras(document);
+  sky = gltf::read_image_light(document);
   channels = gltf::read_channels(document, nodes);
   skins = gltf::read_skins(document);
   for (const tinygltf::Mesh& mesh : document.model.meshes) morph_weights.push_back(mesh.weights);
@@ -193,6 +195,7 @@ Scene SceneFile::Data::still() const {
   scene.materials = materials.materials;
   scene.images = materials.images;
   scene.textures = materials.textures;
+  scene.sky = sky;
   return scene;
 }
 

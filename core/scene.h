@@ -46,7 +46,9 @@ struct TextureUse {
   glm::mat3 uv_from_texcoord{1.0f};
 };
 
-enum class AlphaMode { opaque, mask, blend };
+/// glass (KHR_materials_transmission): the base colour's alpha is the share of light that goes straight on, and the
+/// base colour colours it; the rest is reflected as the base colour says (shared::pane_of).
+enum class AlphaMode { opaque, mask, blend, glass };
 
 struct Material {
   std::string name;
@@ -75,6 +77,7 @@ struct Material {
     const float r = ior > 0.0f ? (ior - 1.0f) / (ior + 1.0f) : 1.0f;
     return specular_factor * glm::min(r * r * specular_color_factor, glm::vec3(1.0f));
   }
+  bool passes_by_chance() const { return alpha_mode == AlphaMode::blend || alpha_mode == AlphaMode::glass; }
   bool is_emissive() const { return emissive_radiance != glm::vec3(0.0f); }
 };
 

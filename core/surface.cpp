@@ -104,7 +104,17 @@ SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t t
   if (glm::dot(point.shading_normal, point.geometric_normal) < 0.0f) point.shading_normal = -point.shading_normal;
 
   glm::vec4 base = material.base_color_factor * sample_use(scene, mesh, material.base_color, at, true);
-  if (!mesh.colors.empty()) base *= interpolate(mesh.colors, at.indices, at.weights);
+  const bool glass = material.alpha_mode == AlphaMode::glass;
+  if (!mesh.colors.empty()) {
+    const glm::vec4 color = interpolate(mesh.colors, at.indices, at.weights);
+    base *= glass ? glm::vec4(glm::vec3(color), 1.0f) : color;
+  }
+  point.tint = glm::vec3(1.0f);
+  if (glass) {
+    const shared::Pane pane = shared::pane_of(base, 1);
+    base = glm::vec4(glm::vec3(base) * pane.reflects, pane.stops);
+    point.tint = pane.tint;
+  }
   if (material.normal.texture >= 0) point.shading_normal = mapped_normal(scene, mesh, at, point);
   point.alpha = alpha_of(material, base.w);
   if (material.unlit) {

@@ -18,7 +18,8 @@ struct SurfacePoint {
   glm::vec3 reflectance_0;
   float reflectance_90;
   float roughness;     // perceptual: its square is GGX's alpha
-  float alpha;         // 1 when opaque; 0 or 1 for MASK; coverage for BLEND
+  float alpha;         // 1 when opaque; 0 or 1 for MASK; coverage for BLEND; of glass, what it stops
+  glm::vec3 tint;      // what light that the surface does not stop is coloured by: 1, but for glass
   glm::vec3 unlit;     // radiance that the camera alone sees
   glm::vec3 emission;  // radiance sent to the front side (both sides when the material is double-sided)
 };

@@ -16,7 +16,7 @@ bool BounceRules::pulse_ended(glm::vec3 in_flight, glm::vec3 sent) const {
 }
 
 bool BounceRules::orders_ended(glm::vec3 next_sent, glm::vec3 total_sent) const {
-  return glm::all(glm::lessThanEqual(next_sent / absorption(), kTolerance * total_sent));
+  return glm::all(glm::lessThanEqual(next_sent / absorption(), kTolerance * weakest * total_sent));
 }
 
 int BounceRules::expected_orders() const {

@@ -15,6 +15,9 @@ struct BounceRules {
   std::optional<int> iterations;
   /// rho_max: the scene's largest albedo.
   float largest_albedo = 0.5f;
+  /// What the weaker of two kinds of light sends, over the stronger one, that from outside and that of lamps within: a
+  /// room on a ground that the sky lights is not done when the ground is.
+  float weakest = 1.0f;
   /// Conjugate gradients over bounces instead of one order after another. Automatic: where the scheme is linear and all
   /// bounces are asked for. A usage error where it is not, and with `bounces` and `passes_per_run`.
   enum class Solver { automatic, plain, conjugate_gradients };
@@ -29,6 +32,8 @@ struct BounceRules {
 
   /// Share of the light that stopping early may cost: 0.2 %.
   static constexpr float kTolerance = 2e-3f;
+  /// No `weakest` is less: kTolerance of it is what sums of floats resolve.
+  static constexpr float kWeakest = 1e-3f;
   /// An albedo of 1 would never end: what is left after 1 % absorption a bounce is asked for then.
   static constexpr float kMinAbsorption = 0.01f;
   /// 0.2 % at the largest albedo that counts, 0.99, needs 1,300.
@@ -45,8 +50,8 @@ struct BounceRules {
   /// The order ends: power in flight under kTolerance (1 - rho_max) of what was sent, in every band.
   bool pulse_ended(glm::vec3 in_flight, glm::vec3 sent) const;
   /// Orders end: what one more would change of what sides send (that is, what the next order would send), over
-  /// (1 - rho_max), under kTolerance of all that was sent. A bound: K brings no more than was sent and sides return
-  /// rho_max of it at most, so the next order changes rho_max times that, and so on.
+  /// (1 - rho_max), under kTolerance of all that was sent, times `weakest`. A bound: K brings no more than was sent and
+  /// sides return rho_max of it at most, so the next order changes rho_max times that, and so on.
   bool orders_ended(glm::vec3 next_sent, glm::vec3 total_sent) const;
   /// Orders that follow from the albedo alone; for estimates only.
   int expected_orders() const;

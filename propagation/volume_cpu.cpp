@@ -76,7 +76,7 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
     : scene_(scene),
       options_(options),
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
-      rules_(bounce_rules(options, largest_albedo(scene))),
+      rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
@@ -85,7 +85,7 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
 }
 
 void VolumeCpu::scene_moved() {
-  rules_ = bounce_rules(options_, largest_albedo(scene_));
+  rules_ = bounce_rules(options_, scene_);
   moved_ = true;
 }
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/light_shares.h"
 #include "core/log.h"
+#include "core/surface.h"
 #include "shaders/voxel/white_pockets.shared.h"
 
 namespace volgi {
@@ -28,6 +30,12 @@ BounceRules bounce_rules(const VolumeOptions& o, float largest_albedo) {
   rules.warm_start = o.warm_start;
   rules.passes_per_run = o.passes_per_run;
   rules.largest_albedo = largest_albedo;
+  return rules;
+}
+
+BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene) {
+  BounceRules rules = bounce_rules(options, largest_albedo(scene));
+  rules.weakest = std::max(float(share_within(scene)), BounceRules::kWeakest);
   return rules;
 }
 

@@ -37,6 +37,7 @@ struct VolumeOptions {
 /// The solver's rules for a scene. @throws Error(usage) for combinations that make no sense, in words of the command
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
+BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene);
 
 /// The sky whose light streams into the volume: of `ordinates` alone, and not after a first bounce on the screen, which
 /// has it. Null: none.

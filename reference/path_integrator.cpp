@@ -40,7 +40,7 @@ PathIntegrator::PathIntegrator(const Scene& scene) : scene_(&scene), rays_(scene
   set_lights(scene.lights);
   if (scene.sky && !scene.sky->constant()) sky_.emplace(*scene.sky);
   for (const Mesh& mesh : scene.meshes)
-    has_blending_ |= scene.materials[static_cast<size_t>(mesh.material)].alpha_mode == AlphaMode::blend;
+    has_blending_ |= scene.materials[static_cast<size_t>(mesh.material)].passes_by_chance();
 }
 
 void PathIntegrator::set_lights(const std::vector<Light>& lights) {
@@ -50,7 +50,9 @@ void PathIntegrator::set_lights(const std::vector<Light>& lights) {
 
 bool PathIntegrator::next_vertex(const Ray& ray, PathVertex& vertex) const {
   RayHit hit;
-  if (!rays_.intersect(ray, hit)) return false;
+  const bool met = rays_.intersect(ray, hit);
+  vertex.tint = hit.tint;
+  if (!met) return false;
   const Mesh& mesh = scene_->meshes[hit.mesh];
   vertex.triangle = hit.index();
   vertex.distance = hit.distance;
@@ -77,8 +79,10 @@ bool PathIntegrator::first_vertex(const CameraRay& ray, std::uint32_t alpha_seed
   return next_vertex(from_camera, vertex);
 }
 
-bool PathIntegrator::visible(const PathVertex& vertex, glm::vec3 to_light, float distance, std::uint32_t seed) const {
-  return !rays_.occluded({vertex.start, to_light, distance * kLightEnd, seed, vertex.triangle, {}});
+// Share of light that arrives.
+glm::vec3 PathIntegrator::visible(const PathVertex& vertex, glm::vec3 to_light, float distance,
+                                  std::uint32_t seed) const {
+  return rays_.passed({vertex.start, to_light, distance * kLightEnd, seed, vertex.triangle, {}});
 }
 
 // Radiance that the light causes towards the viewer when nothing is in between.
@@ -97,8 +101,8 @@ glm::vec3 PathIntegrator::all_punctual(const PathVertex& vertex, PathSampler& sa
     glm::vec3 to_light;
     float distance = 0.0f;
     const glm::vec3 radiance = punctual_light(vertex, lights_[i], to_light, distance);
-    if (radiance != glm::vec3(0.0f) && visible(vertex, to_light, distance, hash(seed, static_cast<std::uint32_t>(i))))
-      sum += radiance;
+    if (radiance != glm::vec3(0.0f))
+      sum += radiance * visible(vertex, to_light, distance, hash(seed, static_cast<std::uint32_t>(i)));
   }
   return sum;
 }
@@ -114,7 +118,7 @@ std::uint32_t PathIntegrator::lights_reaching(const PathVertex& vertex, std::uin
                                                            : glm::length(light.position - vertex.surface.position);
     const bool faces_it =
         glm::dot(vertex.shading_normal, to_light) > 0.0f && glm::dot(vertex.geometric_normal, to_light) > 0.0f;
-    if (faces_it && irradiance != glm::vec3(0.0f) && visible(vertex, to_light, distance, alpha_seed))
+    if (faces_it && irradiance != glm::vec3(0.0f) && visible(vertex, to_light, distance, alpha_seed) != glm::vec3(0.0f))
       bits |= 1u << i % bits_in_float;
   }
   return bits;
@@ -140,8 +144,8 @@ glm::vec3 PathIntegrator::one_punctual(const PathVertex& vertex, PathSampler& sa
     }
   }
   const std::uint32_t seed = sampler.next_seed();
-  if (!(total > 0.0f) || !visible(vertex, chosen_direction, chosen_distance, seed)) return glm::vec3(0.0f);
-  return chosen * (total / chosen_weight);
+  if (!(total > 0.0f)) return glm::vec3(0.0f);
+  return chosen * (total / chosen_weight) * visible(vertex, chosen_direction, chosen_distance, seed);
 }
 
 glm::vec3 PathIntegrator::emitters(const PathVertex& vertex, PathSampler& sampler) const {
@@ -157,20 +161,22 @@ glm::vec3 PathIntegrator::emitters(const PathVertex& vertex, PathSampler& sample
   const glm::vec3 reflection = reflected(vertex, to_light);
   if ((cosine <= 0.0f && !light.double_sided) || cosine == 0.0f || reflection == glm::vec3(0.0f))
     return glm::vec3(0.0f);
-  if (rays_.occluded({vertex.start, to_light, distance * kLightEnd, seed, vertex.triangle, light.triangle}))
-    return glm::vec3(0.0f);
+  const glm::vec3 arrives =
+      rays_.passed({vertex.start, to_light, distance * kLightEnd, seed, vertex.triangle, light.triangle});
   const float pdf_light = light.pdf_area * (distance * distance / std::abs(cosine));
-  return reflection * light.radiance * (power_heuristic(pdf_light, pdf_of_path(vertex, to_light)) / pdf_light);
+  return reflection * arrives * light.radiance *
+         (power_heuristic(pdf_light, pdf_of_path(vertex, to_light)) / pdf_light);
 }
 
 glm::vec3 PathIntegrator::sky(const PathVertex& vertex, PathSampler& sampler) const {
   const SkySample light = sky_->sample(sampler.next2());
   const std::uint32_t seed = sampler.next_seed();
   const glm::vec3 reflection = light.pdf > 0.0f ? reflected(vertex, light.towards) : glm::vec3(0.0f);
-  if (reflection == glm::vec3(0.0f) ||
-      rays_.occluded({vertex.start, light.towards, std::numeric_limits<float>::infinity(), seed, vertex.triangle, {}}))
-    return glm::vec3(0.0f);
-  return reflection * light.radiance * (power_heuristic(light.pdf, pdf_of_path(vertex, light.towards)) / light.pdf);
+  if (reflection == glm::vec3(0.0f)) return glm::vec3(0.0f);
+  const float far = std::numeric_limits<float>::infinity();
+  const glm::vec3 arrives = rays_.passed({vertex.start, light.towards, far, seed, vertex.triangle, {}});
+  return reflection * arrives * light.radiance *
+         (power_heuristic(light.pdf, pdf_of_path(vertex, light.towards)) / light.pdf);
 }
 
 glm::vec3 PathIntegrator::background(glm::vec3 direction) const {
@@ -200,9 +206,9 @@ float PathIntegrator::emitter_weight(const PathVertex& hit, glm::vec3 direction,
 }
 
 PathRadiance PathIntegrator::trace(const PathVertex& first, PathSampler& sampler, int max_bounces) const {
-  PathRadiance sum{first.emission + first.surface.unlit, glm::vec3(0.0f)};
+  PathRadiance sum{first.tint * (first.emission + first.surface.unlit), glm::vec3(0.0f)};
   PathVertex vertex = first;
-  glm::vec3 throughput(1.0f);
+  glm::vec3 throughput = first.tint;
   for (int bounce = 0;; ++bounce) {
     glm::vec3& target = bounce == 0 ? sum.direct : sum.indirect;
     sampler.seek(static_cast<std::uint32_t>(2 + bounce * kPairsPerVertex));
@@ -225,7 +231,9 @@ PathRadiance PathIntegrator::trace(const PathVertex& first, PathSampler& sampler
     }
     if (!(largest(throughput) > 0.0f)) break;
     const Ray ray{vertex.start, direction, std::numeric_limits<float>::infinity(), alpha_seed, vertex.triangle, {}};
-    if (!next_vertex(ray, vertex)) {
+    const bool met = next_vertex(ray, vertex);
+    throughput *= vertex.tint;
+    if (!met) {
       if (scene_->sky) target += throughput * background(direction) * sky_weight(direction, pdf);
       break;
     }

@@ -26,6 +26,7 @@ struct PathVertex {
   glm::vec3 start;             // rays leave from here (EmbreeScene::leaving_point)
   glm::vec3 emission;          // radiance towards where the path came from
   float distance = 0.0f;       // [m] from the previous vertex
+  glm::vec3 tint{1.0f};        // of light on the way from the previous vertex, by glass
 };
 
 /// Radiance along a camera ray, apart as --light has it.
@@ -46,6 +47,7 @@ class PathIntegrator {
 
   explicit PathIntegrator(const Scene& scene);
 
+  /// @return false where the ray meets nothing; the vertex then has its tint alone.
   bool first_vertex(const CameraRay& ray, std::uint32_t alpha_seed, PathVertex& vertex) const;
   /// What a ray sees that meets nothing.
   glm::vec3 background(glm::vec3 direction) const;
@@ -67,7 +69,7 @@ class PathIntegrator {
   bool next_vertex(const Ray& ray, PathVertex& vertex) const;
   glm::vec3 punctual_light(const PathVertex& vertex, const shared::PunctualLight& light, glm::vec3& to_light,
                            float& distance) const;
-  bool visible(const PathVertex& vertex, glm::vec3 to_light, float distance, std::uint32_t alpha_seed) const;
+  glm::vec3 visible(const PathVertex& vertex, glm::vec3 to_light, float distance, std::uint32_t alpha_seed) const;
   glm::vec3 one_punctual(const PathVertex& vertex, PathSampler& sampler) const;
   glm::vec3 emitters(const PathVertex& vertex, PathSampler& sampler) const;
   glm::vec3 sky(const PathVertex& vertex, PathSampler& sampler) const;

@@ -51,7 +51,7 @@ void PixelTracer::add_sample(glm::vec2 corner, const PathVertex* known, PathSamp
     const glm::vec2 position = corner + (box ? sampler.next2() : glm::vec2(0.5f));
     const CameraRay ray = camera_ray(camera_, position, options_.size);
     if (!integrator_.first_vertex(ray, sampler.next_seed(), vertex)) {
-      sum.direct += glm::dvec3(integrator_.background(ray.direction));
+      sum.direct += glm::dvec3(vertex.tint * integrator_.background(ray.direction));
       return;
     }
   }

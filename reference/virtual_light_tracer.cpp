@@ -123,22 +123,24 @@ class PictureGather {
       radiance.direct += glm::dvec3(integrator_.all_punctual(vertex, sampler));
     }
     radiance.direct += glm::dvec3(vertex.emission);
+    radiance.direct *= glm::dvec3(vertex.tint);
+    radiance.indirect *= glm::dvec3(vertex.tint);
     write_light(x, y, radiance);
   }
 
   ReferencePicture take() { return std::move(picture_); }
 
  private:
-  bool visible(const PathVertex& vertex, const GatheredLight& light, std::uint32_t seed) const {
+  glm::vec3 visible(const PathVertex& vertex, const GatheredLight& light, std::uint32_t seed) const {
     const glm::dvec3 between = light.aim - glm::dvec3(vertex.start);
     const double distance = glm::length(between);
-    if (!(distance > ray_end_)) return true;
-    return !integrator_.rays().occluded({vertex.start,
-                                         glm::vec3(between / distance),
-                                         static_cast<float>(distance - ray_end_),
-                                         hash(seed, light.index),
-                                         vertex.triangle,
-                                         {}});
+    if (!(distance > ray_end_)) return glm::vec3(1.0f);
+    return integrator_.rays().passed({vertex.start,
+                                      glm::vec3(between / distance),
+                                      static_cast<float>(distance - ray_end_),
+                                      hash(seed, light.index),
+                                      vertex.triangle,
+                                      {}});
   }
 
   // In the list's order, so that the sum's rounding does not depend on anything.
@@ -147,9 +149,10 @@ class PictureGather {
     for (const GatheredLight& light : lights_) {
       const double irradiance = irradiance_per_flux(vertex, light);
       if (irradiance <= 0.0) continue;
-      if (options_.visibility == VirtualLightGatherOptions::Visibility::exact && !visible(vertex, light, seed))
-        continue;
-      (light.indirect ? sum.indirect : sum.direct) += irradiance * light.flux;
+      glm::dvec3 arrives = irradiance * light.flux;
+      if (options_.visibility == VirtualLightGatherOptions::Visibility::exact)
+        arrives *= glm::dvec3(visible(vertex, light, seed));
+      (light.indirect ? sum.indirect : sum.direct) += arrives;
     }
     const glm::dvec3 reflection = glm::dvec3(vertex.surface.albedo) / kPi;
     return {sum.direct * reflection, sum.indirect * reflection};

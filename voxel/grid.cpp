@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/scene_detail.h"
 
 namespace volgi {
 
@@ -37,14 +38,17 @@ Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift
 }
 
 int grid_cells_by_size(const Scene& scene) {
-  constexpr int LEAST = 48, MOST = 128, STEP = 8;
+  constexpr int LEAST = 48, STEP = 8;
   constexpr double LONGEST_M = 0.3;
-  constexpr size_t MOST_CELLS = size_t(1) << 17;
+  // A house on open ground: the flat grid has room for more cells along it.
+  const bool on_ground = detail_box(scene).has_value();
+  const int most = on_ground ? 256 : 128;
+  const size_t most_cells = size_t(1) << (on_ground ? 18 : 17);
   const glm::vec3 extent = scene.bounds_max - scene.bounds_min;
   const double longest = double(std::max({extent.x, extent.y, extent.z}));
   if (!(longest > 0.0) || scene.triangle_count() == 0) return LEAST;
   int cells = LEAST;
-  while (cells < MOST && longest / cells > LONGEST_M && cell_count(make_grid(scene, cells + STEP)) <= MOST_CELLS)
+  while (cells < most && longest / cells > LONGEST_M && cell_count(make_grid(scene, cells + STEP)) <= most_cells)
     cells += STEP;
   return cells;
 }

@@ -15,8 +15,9 @@ using shared::Grid;
 /// @throws Error(usage) when N < 1; Error(bad_input) when the scene has no triangles.
 Grid make_grid(const Scene& scene, int cells_along_longest_axis, glm::vec3 shift_cells = glm::vec3(0.0f));
 
-/// Cells along the longest axis for a scene of this size: 48, and more of them where they would be longer than 0.3 m,
-/// what a pillar is; 128 at most, and no more than 2^17 in all.
+/// Cells along the longest axis for a scene of this size: 48, and more of them where they
+/// would be longer than 0.3 m, what a pillar is; 128 at most, and no more than 2^17 in all. Twice as many of both for
+/// what stands on open ground (core/scene_detail.h).
 int grid_cells_by_size(const Scene& scene);
 
 inline bool same_grid(const Grid& a, const Grid& b) {

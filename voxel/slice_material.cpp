@@ -40,13 +40,16 @@ float level_of_detail(const Scene& scene, const Mesh& mesh, const glm::uvec3& co
 }
 
 /// @param base  baseColor times COLOR_0; @param texel, emissive_texel  of the textures or 1.
-SlicedMaterial sliced(const Material& m, const glm::vec4& base, const glm::vec4& texel,
-                      const glm::vec3& emissive_texel) {
+SlicedMaterial sliced(const Material& m, glm::vec4 base, const glm::vec4& texel, const glm::vec3& emissive_texel) {
+  if (m.alpha_mode == AlphaMode::glass) {
+    const shared::Pane pane = shared::pane_of(base, 0);
+    base = glm::vec4(glm::vec3(base) * pane.reflects, pane.stops);
+  }
   const shared::Reflectance reflectance = reflectance_of(m, glm::vec3(base), m.metallic_factor * texel.z);
   SlicedMaterial out{shared::surface_albedo(reflectance, m.roughness_factor * texel.y), glm::vec3(0.0f), 1.0f};
   if (m.is_emissive()) out.emission = m.emissive_radiance * emissive_texel;
   if (m.alpha_mode == AlphaMode::mask) out.stopped = base.a + ALPHA_CUTOFF_SLACK >= m.alpha_cutoff ? 1.0f : 0.0f;
-  if (m.alpha_mode == AlphaMode::blend) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);
+  if (m.passes_by_chance()) out.stopped = glm::clamp(base.a, 0.0f, 1.0f);
   return out;
 }
 
@@ -99,8 +102,10 @@ SlicedMaterial TriangleMaterial::at(const glm::vec3& weights) const {
   const Material& m = s_.material(t_);
   glm::vec4 base = m.base_color_factor * texel(m.base_color, weights, base_lod_, true);
   if (!mesh.colors.empty()) {
-    base *=
+    glm::vec4 color =
         weights.x * mesh.colors[corners_.x] + weights.y * mesh.colors[corners_.y] + weights.z * mesh.colors[corners_.z];
+    if (m.alpha_mode == AlphaMode::glass) color.a = 1.0f;
+    base *= color;
   }
   const glm::vec4 metallic = texel(m.metallic, weights, metallic_lod_, false);
   const glm::vec3 emissive(m.is_emissive() ? texel(m.emissive, weights, emissive_lod_, true) : glm::vec4(1.0f));

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include "apps/report/added_picture.h"
 #include "core/progress.h"
 
 namespace volgi::app {
@@ -25,6 +26,8 @@ std::vector<Task> tasks_of(std::vector<ReportScene>& scenes, const Sweep& sweep,
   for (ReportScene& scene : scenes)
     for (const Setting& setting : sweep.settings)
       for (const std::string& light : setting.lights) {
+        const auto& only = setting.scenes;
+        if (!only.empty() && std::find(only.begin(), only.end(), scene.name) == only.end()) continue;
         const Json identity = point_identity(scene, setting, light, context);
         tasks.push_back({&scene, &setting, light, identity.at("key").get<std::string>()});
       }
@@ -90,7 +93,9 @@ std::vector<Json> collect_points(std::vector<ReportScene>& scenes, const Sweep& 
 Repeated repeat_points(std::vector<ReportScene>& scenes, const Sweep& sweep, const MeasureContext& context,
                        const PointsFile& file, int count) {
   std::vector<Task> tasks = tasks_of(scenes, sweep, context);
-  std::erase_if(tasks, [&](const Task& task) { return file.find(task.key) == nullptr; });
+  std::erase_if(tasks, [&](const Task& task) {
+    return task.setting->renderer == ADDED_PICTURE || file.find(task.key) == nullptr;
+  });
   const size_t wanted = std::min(tasks.size(), size_t(std::max(count, 0)));
   Progress progress("repeat", wanted);
   References references(sweep, context);

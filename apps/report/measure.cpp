@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/report/added_picture.h"
 #include "apps/report/machine.h"
 #include "apps/volgi/metrics_json.h"
 #include "core/error.h"
@@ -34,6 +35,7 @@ float exposure_of(const ReportReference& reference) {
 
 std::string command_of(const ReportScene& scene, const Setting& setting, const std::string& light,
                        const MeasureContext& context) {
+  if (setting.renderer == ADDED_PICTURE) return fmt::format("cp {} point.exr", setting.options.at(1));
   const bool frames = setting.renderer == "render";
   return fmt::format("volgi {} {}{} {} --light {} --size {}x{}{} -o point.exr{}", setting.renderer, scene.path.string(),
                      scene.light_arguments, fmt::join(setting.options, " "), light, context.size.x, context.size.y,
@@ -73,6 +75,7 @@ void judge(Json& point, const Image& picture, const ReportReference& all_bounces
 }
 
 void add_times(Json& point, const Rendering& rendering) {
+  if (rendering.timer.empty()) return;  // nobody has measured it
   point["timer"] = rendering.timer;
   point["frame_ms"] = {{"min", rendering.min_ms}, {"median", rendering.median_ms}, {"max", rendering.max_ms}};
   point["passes"] = rendering.passes;
@@ -114,6 +117,7 @@ void write_pictures(Json& point, const Image& picture, const ReportReference& re
 
 Json point_identity(const ReportScene& scene, const Setting& setting, const std::string& light,
                     const MeasureContext& context) {
+  const bool added = setting.renderer == ADDED_PICTURE;
   Json identity{{"scene", scene.name},
                 {"scene_hash", scene.hash},
                 {"technique", setting.technique},
@@ -122,7 +126,7 @@ Json point_identity(const ReportScene& scene, const Setting& setting, const std:
                 {"light", light},
                 {"size", {context.size.x, context.size.y}},
                 {"frames", context.frames},
-                {"device", context.context.device_name()},
+                {"device", added ? "unknown: another renderer's" : context.context.device_name()},
                 {"machine", machine_name()},
                 {"program", program_name()}};
   identity["key"] = hex(content_hash(identity.dump()));

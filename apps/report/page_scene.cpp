@@ -130,8 +130,19 @@ std::string image(const std::filesystem::path& folder, const std::string& file, 
                      escaped(alt));
 }
 
-// The reference; result and error map of points on the front and of techniques at their defaults.
-std::string gallery(const Verdict& verdict, const std::set<std::string>& front, const std::filesystem::path& folder) {
+// Result and error map of a point.
+std::string triple(const Json& p, const std::string& head, double error_percent, bool baseline,
+                   const std::filesystem::path& folder) {
+  return fmt::format("<div class=\"triple\" data-key=\"{}\" data-exposure=\"{}\"{} data-label=\"{}\">{}{}</div>",
+                     p["key"].get<std::string>(), p.value("exposure_ev", 0.0), baseline ? " data-baseline" : "",
+                     escaped(label_of(p)),
+                     image(folder, p["picture"], "result", head, p.value("radiance_picture", std::string())),
+                     image(folder, p["error_picture"], "error", fmt::format("its error: {}", percent(error_percent))));
+}
+
+// The reference; points on the front, techniques at their defaults, and pictures whose time nobody knows.
+std::string gallery(const Report& report, const Verdict& verdict, const std::set<std::string>& front,
+                    const std::filesystem::path& folder) {
   std::string out = "<div class=\"triple\">" +
                     image(folder, fmt::format("pictures/{}-{}.png", verdict.scene, verdict.light), "reference",
                           "reference", fmt::format("pictures/{}-{}-radiance.png", verdict.scene, verdict.light)) +
@@ -139,13 +150,15 @@ std::string gallery(const Verdict& verdict, const std::set<std::string>& front, 
   for (const Judged& j : verdict.judged) {
     const Json& p = *j.point;
     if (!(j.is_default || front.contains(p["key"].get<std::string>())) || !p.contains("picture")) continue;
-    out +=
-        fmt::format("<div class=\"triple\" data-key=\"{}\" data-exposure=\"{}\"{} data-label=\"{}\">{}{}</div>",
-                    p["key"].get<std::string>(), p.value("exposure_ev", 0.0),
-                    &j == verdict.baseline ? " data-baseline" : "", escaped(j.label),
-                    image(folder, p["picture"], "result", fmt::format("{}: {} ms", j.label, figure(j.time_ms)),
-                          p.value("radiance_picture", std::string())),
-                    image(folder, p["error_picture"], "error", fmt::format("its error: {}", percent(j.error_percent))));
+    out += triple(p, fmt::format("{}: {} ms", j.label, figure(j.time_ms)), j.error_percent, &j == verdict.baseline,
+                  folder);
+  }
+  for (const Json& p : report.points) {
+    const bool here = p.at("scene") == verdict.scene && p.at("light") == verdict.light;
+    if (!here || p.contains("frame_ms") || !p.contains("picture") || !p.contains("metrics")) continue;
+    const Json& metrics = p["metrics"];
+    const char* error = metrics.contains("rmse_pct_denoised") ? "rmse_pct_denoised" : "rmse_pct";
+    out += triple(p, label_of(p), metrics.value(error, 0.0), false, folder);
   }
   return "<details class=\"gallery\" open><summary>Pictures</summary><div class=\"pictures\">" + out +
          "</div><p class=\"scale\"><span>−50 % too dark</span><span>0</span><span>too bright +50 "
@@ -170,7 +183,7 @@ std::string light_part(const Report& report, const Verdict& verdict, const std::
       "aria-live=\"polite\">"
       "</figcaption></figure><div class=\"viewer\" hidden></div>{4}{5}</div>\n",
       escaped(verdict.scene), verdict.light, verdict_list(verdict), plot_svg(verdict, false),
-      gallery(verdict, front, folder), table(report, verdict, front));
+      gallery(report, verdict, front, folder), table(report, verdict, front));
 }
 
 }  // namespace

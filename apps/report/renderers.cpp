@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/bench/timing.h"
+#include "apps/report/added_picture.h"
 #include "apps/volgi/frame_options.h"
 #include "core/error.h"
 #include "core/gl/pass_timer.h"
@@ -109,6 +110,8 @@ void check_options(const std::string& renderer, const std::vector<std::string>& 
   if (renderer == "reference") tracer_options(options);
 }
 
-std::map<std::string, Renderer> standard_renderers() { return {{"render", render_frames}, {"reference", trace_paths}}; }
+std::map<std::string, Renderer> standard_renderers() {
+  return {{"render", render_frames}, {"reference", trace_paths}, {ADDED_PICTURE, read_added_picture}};
+}
 
 }  // namespace volgi::app

@@ -29,14 +29,15 @@ struct Rendering {
   Image picture;                                                    // of the last frame
   double min_ms = 0, median_ms = 0, max_ms = 0;                     // a frame
   nlohmann::ordered_json passes = nlohmann::ordered_json::array();  // {"name", "ms"}: medians
-  std::string timer;                                                // gpu or wall
+  std::string timer;                                                // gpu or wall; empty: there are no times
   std::optional<size_t> memory_bytes;                               // of GL objects and volume; none: not known
 };
 
 using Renderer = std::function<Rendering(const RenderTask&)>;
 
 /// Makers of pictures by the name of the command that makes the same one: "render" (screen::Frame) and "reference"
-/// (the path tracer, its rays' tree built anew for each frame). @throws Error(usage) for options that there are not.
+/// (the path tracer, its rays' tree built anew for each frame); and what reads those of other renderers
+/// (added_picture.h). @throws Error(usage) for options that there are not.
 std::map<std::string, Renderer> standard_renderers();
 
 /// Finds out before hours of measuring that "render" or "reference" would refuse these options; knows nothing of

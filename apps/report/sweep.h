@@ -12,6 +12,7 @@ struct Setting {
   std::vector<std::string> options;  // what follows `volgi COMMAND SCENE`, in pairs --name value
   std::string varied;                // what differs from the technique's own line; empty for that line itself
   std::vector<std::string> lights;   // full, indirect
+  std::vector<std::string> scenes;   // by name; none: all of the report
   bool one_bounce = false;           // carries the first bounce only, and is compared with that as well
   bool baseline = false;             // the technique that others are held against
 

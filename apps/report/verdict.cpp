@@ -124,7 +124,7 @@ Verdict judge_points(const std::vector<Json>& points, const std::string& scene, 
     if (point.at("scene") != scene || point.at("light") != light) continue;
     find(v, point);
     const std::optional<double> error = error_of(point);
-    if (!error) continue;
+    if (!error || !point.contains("frame_ms")) continue;  // of another renderer, without its time
     v.judged.push_back({&point, label_of(point), point.at("frame_ms").at("median").get<double>(), *error,
                         point.value("varied", std::string()).empty(), point.at("renderer") == "reference",
                         point.value("baseline", false)});

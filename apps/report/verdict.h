@@ -20,7 +20,7 @@ struct Judged {
 /// What one scene and light comes to.
 struct Verdict {
   std::string scene, light;
-  std::vector<Judged> judged;  // by time; those with an error message or without figures are left out
+  std::vector<Judged> judged;  // by time; those with an error message, or without figures or times, are left out
   std::vector<size_t> front;   // of `judged`: no other is both faster and more accurate. By time
 
   /// The fastest at or under an error; and the most accurate among those that the path tracer needs at least `speedup`

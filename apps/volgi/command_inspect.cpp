@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/inspect/volume_page.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/in_a_child.h"
 #include "core/atomic_file.h"
@@ -33,12 +35,14 @@ struct InspectCommand {
   bool sheet = false;
   bool json = false;
   bool diagnose = false;
+  bool html = false;
   int bins = 0;  // of the histogram; 0: none
 
   int run() const;
   std::vector<openvdb::GridBase::Ptr> chosen(const VdbFile& vdb) const;
   std::vector<SlicePlane> planes(const GridSummary& summary) const;
   void write_picture(const std::vector<openvdb::GridBase::Ptr>& grids) const;
+  void write_page() const;
 };
 
 /// A file's text on a terminal: no control characters.
@@ -254,10 +258,23 @@ void InspectCommand::write_picture(const std::vector<openvdb::GridBase::Ptr>& gr
   write_png_display(out, slice_picture(*grids[0], summary, planes(summary)));
 }
 
+void InspectCommand::write_page() const {
+  const VdbFile vdb = read_vdb(file);
+  const std::string page = volume_page(printable(file.filename().string()), chosen(vdb));
+  write_atomically(out, [&](const std::filesystem::path& path) { std::ofstream(path, std::ios::binary) << page; });
+}
+
 int InspectCommand::run() const {
   const bool picture = sheet || !slice.empty();
   if (picture && out.empty()) usage("a picture needs -o OUT.png");
-  if (!picture && !out.empty()) usage("-o needs --slice or --sheet");
+  if (html && out.empty()) usage("--html needs -o OUT.html");
+  if (!picture && !html && !out.empty()) usage("-o needs --slice, --sheet or --html");
+  if (html) {
+    if (out.extension() != ".html") usage(out.string() + ": -o needs a name that ends in .html");
+    check_writable(out);
+    write_page();
+    return int(ExitCode::done);
+  }
   if (picture) {
     if (out.extension() != ".png") usage(out.string() + ": -o needs a name that ends in .png");
     check_writable(out);
@@ -310,19 +327,25 @@ void add_inspect_command(CLI::App& app, int& exit_code) {
   command->add_option("--at", options->at, "cell that the slices of --sheet go through (the middle)")
       ->type_name("X,Y,Z")
       ->needs(sheet);
-  command->add_option("-o,--output", options->out, "picture to write, .png")->type_name("FILE");
-  CLI::Option* json = command->add_flag("--json", options->json, "print JSON");
+  CLI::Option* html = command->add_flag("--html", options->html,
+                                        "write a page to look at the volume in a browser: slices, histogram, cells in "
+                                        "space; it opens from disk");
+  html->excludes(slice)->excludes(sheet);
+  command->add_option("-o,--output", options->out, "picture to write, .png, or page, .html")->type_name("FILE");
+  CLI::Option* json = command->add_flag("--json", options->json, "print JSON")->excludes(html);
   command->add_option("--histogram", options->bins, "counts of cells in so many equal steps of their values")
       ->check(CLI::Range(1, 1000))
       ->type_name("BINS")
       ->excludes(slice)
-      ->excludes(sheet);
+      ->excludes(sheet)
+      ->excludes(html);
   command
       ->add_flag("--diagnose", options->diagnose,
                  "says OK or FAILED of every grid: exit code 1 where a cell is no number")
       ->excludes(json)
       ->excludes(slice)
-      ->excludes(sheet);
+      ->excludes(sheet)
+      ->excludes(html);
   command->footer(
       "Indices are cells, counted as in the file; places are in metres, units as the grids say.\n"
       "Example: volgi inspect out/cornell.vdb --grid fluence --slice z=16 -o out/fluence.png");

@@ -135,7 +135,7 @@ void warn_of_exposure(const Image& image, float exposure_ev, const std::filesyst
 
 int RenderCommand::sample_count(const Scene& loaded) const {
   constexpr int OF_BLEND = 8;
-  const auto blends = [](const Material& m) { return m.alpha_mode == AlphaMode::blend; };
+  const auto blends = [](const Material& m) { return m.passes_by_chance(); };
   return samples.value_or(std::any_of(loaded.materials.begin(), loaded.materials.end(), blends) ? OF_BLEND : 1);
 }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/report/added_picture.h"
 #include "apps/report/collect.h"
 #include "apps/report/export.h"
 #include "apps/report/page.h"
@@ -32,7 +33,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct ReportOptions {
-  std::vector<std::string> scenes, techniques;
+  std::vector<std::string> scenes, techniques, pictures;
   fs::path output, data = "data", sweep_file, summary;
   std::string size;
   std::optional<int> frames;
@@ -124,7 +125,9 @@ void write_report(const Report& report, const ReportOptions& options) {
 
 int run(const ReportOptions& options, const std::string& command) {
   set_quiet(options.quiet);
-  const Sweep sweep = requested_sweep(options);
+  Sweep sweep = requested_sweep(options);
+  std::vector<AddedPicture> pictures;
+  for (const std::string& text : options.pictures) pictures.push_back(parse_added_picture(text));
   SceneOptions asked;
   asked.size_text = sweep.size;
   const glm::ivec2 size = asked.size();
@@ -138,6 +141,10 @@ int run(const ReportOptions& options, const std::string& command) {
   } else if (!fs::exists(options.output / "points.jsonl")) {
     throw Error(ExitCode::bad_input,
                 (options.output / "points.jsonl").string() + ": not there; measure without --page-only");
+  }
+  for (const AddedPicture& picture : pictures) {
+    const std::vector<Setting> settings = settings_of(picture, scenes, size);
+    sweep.settings.insert(sweep.settings.end(), settings.begin(), settings.end());
   }
   make_folder(options.output);
   if (!options.summary.empty()) check_writable(options.summary);  // not after an hour of measuring
@@ -190,6 +197,14 @@ void add_options(CLI::App& command, ReportOptions& o) {
                   "figures differ")
       ->check(CLI::Range(1, 1000000));
   command.add_flag("--page-only", o.page_only, "measure nothing: the page of what points.jsonl has");
+  command
+      .add_option(
+          "--add-picture", o.pictures,
+          "another renderer's picture of the scene beside ours, and the milliseconds that it took; {scene} and "
+          "{light} in FILE stand for a scene's name and for full or indirect (docs/yardstick.md); may be repeated")
+      ->type_name("NAME=FILE.exr[:MS]")
+      ->allow_extra_args(false)
+      ->excludes("--page-only");
   command.add_flag("--quiet", o.quiet, "print nothing but errors");
   command.footer(kFooter);
 }

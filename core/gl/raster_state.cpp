@@ -23,6 +23,14 @@ void begin_geometry_pass() {
   glDepthMask(GL_TRUE);
 }
 
+void begin_filter_pass() {
+  begin_geometry_pass();
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
+  glBlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ONE, GL_ONE);
+}
+
 void begin_fullscreen_pass(bool add) {
   begin_pass();
   glDisable(GL_DEPTH_TEST);

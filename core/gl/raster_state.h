@@ -7,6 +7,8 @@ namespace volgi::gl {
 
 /// Geometry with reversed depth: 1 near, 0 far, the greater wins. Clear depth to 0.
 void begin_geometry_pass();
+/// Geometry over what a geometry pass has drawn, in front of it alone: colours are multiplied, alpha takes the maximum.
+void begin_filter_pass();
 /// A triangle over the viewport, without depth.
 /// @param add adds to the target instead of replacing it.
 void begin_fullscreen_pass(bool add = false);

@@ -211,6 +211,23 @@ void SceneBuffers::draw(const Program& program) const {
   glBindVertexArray(0);
 }
 
+bool SceneBuffers::has_glass() const {
+  return std::any_of(ranges_.begin(), ranges_.end(), [&](const Range& range) {
+    return materials_[size_t(range.material)].alpha_mode == AlphaMode::glass;
+  });
+}
+
+void SceneBuffers::draw_glass(const Program& program) const {
+  program.use();
+  glBindVertexArray(vertex_array_.id());
+  for (const Range& range : ranges_) {
+    if (materials_[size_t(range.material)].alpha_mode != AlphaMode::glass) continue;
+    bind_material(program, range.material);
+    glDrawArrays(GL_TRIANGLES, range.first, range.count);
+  }
+  glBindVertexArray(0);
+}
+
 void SceneBuffers::visit_triangles(GLuint binding, std::initializer_list<const Program*> alpha_programs,
                                    const std::function<void(const Triangles&)>& visit) const {
   vertices_.bind_storage(binding);

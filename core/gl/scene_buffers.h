@@ -30,6 +30,9 @@ class SceneBuffers {
   /// uniforms and binds texture units 0 (base colour), 1 (metallic), 2 (emissive), 3 (normal). Skips meshes without
   /// triangles.
   void draw(const Program& program) const;
+  /// Likewise, what is of glass alone.
+  void draw_glass(const Program& program) const;
+  bool has_glass() const;
 
   /// Of pictures that are averaged each has another one, evenly spread over [0, 1): what BLEND covers by chance is then
   /// covered in its share of them.

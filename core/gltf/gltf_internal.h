@@ -9,6 +9,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_precision.hpp>
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <set>
@@ -144,11 +145,15 @@ class TextureTable {
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);
 
+// --- image_light.cpp
+/// EXT_lights_image_based of the scene that is read; null where it has none. Irradiance of an unobstructed surface is
+/// what its coefficients say, to the bands they have; what is seen, and what casts shadows, are its sharpest pictures,
+/// turned over as those of most agreement with the coefficients.
+std::shared_ptr<const Sky> read_image_light(const Document& document);
+
 // --- transmission.cpp
-/// KHR_materials_transmission on a material that is otherwise read: light passes straight on, as through a hole, as
-/// much as the base colour's luminance lets pass. What is absorbed on the way counts as covered and black, so that dark
-/// glass darkens; the light that passes keeps its own hue. Of coverage a, transmission t and luminance Y of the base
-/// colour ρ, the surface stops a(1 − tY) and reflects (1 − t)/(1 − tY) ρ of that.
+/// KHR_materials_transmission on a material that is otherwise read: AlphaMode::glass. Of light the transmission's share
+/// passes straight on in the base colour, as through a coloured hole; the rest is reflected.
 void apply_transmission(const Document& document, const tinygltf::Material& in, const std::string& who,
                         TextureTable& textures, Material& material);
 

@@ -16,12 +16,10 @@ using Json = nlohmann::json;
 constexpr int deepest_nesting = 64;  // tinygltf recurses into "extras"
 
 const std::set<std::string_view> supported_extensions = {
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_texture_transform",
-    "KHR_mesh_quantization",      "KHR_materials_unlit",
-    "KHR_draco_mesh_compression", "EXT_meshopt_compression",
-    "EXT_texture_webp",           "EXT_mesh_gpu_instancing"};
+    "KHR_lights_punctual",        "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_texture_transform",           "KHR_mesh_quantization", "KHR_materials_unlit",
+    "KHR_draco_mesh_compression", "EXT_meshopt_compression",         "EXT_texture_webp",      "EXT_mesh_gpu_instancing",
+    "EXT_lights_image_based"};
 
 /// Its specularFactor is not KHR_materials_specular's: read with checks of its own.
 constexpr std::string_view SPECULAR_GLOSSINESS = "KHR_materials_pbrSpecularGlossiness";

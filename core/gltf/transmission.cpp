@@ -12,15 +12,13 @@ constexpr const char* EXTENSION = "KHR_materials_transmission";
 
 float luminance(glm::vec3 c) { return glm::dot(c, glm::vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-/// What of a surface stops light (alpha) and the reflectance of that part, in units of the base colour.
-struct Covered {
-  float stops = 1.0f;
-  float reflects = 1.0f;
-};
-
-Covered covered_by(float coverage, float passes, glm::vec3 base) {
-  const float stops = 1.0f - passes * luminance(base);
-  return {coverage * stops, stops > 0.0f ? (1.0f - passes) / stops : 0.0f};
+/// AlphaMode::glass of one colour: that of the base, and the share that passes.
+glm::vec4 glass_of(float coverage, float passes, glm::vec3 base) {
+  if (coverage >= 1.0f) return {base, passes};
+  // What is not covered passes without colour: a paler glass that reflects as much, and passes it in the mean.
+  const glm::vec3 uncovered(1.0f - coverage);
+  const glm::vec3 both = uncovered + coverage * base, through = uncovered + coverage * passes * base;
+  return {both, luminance(through) / std::max(luminance(both), 1e-6f)};
 }
 
 /// Texel of RGBA at the place of another image's texel.
@@ -40,7 +38,8 @@ bool lie_alike(const TextureUse& a, const TextureUse& b) {
   return a.texcoord == b.texcoord && a.uv_from_texcoord == b.uv_from_texcoord;
 }
 
-/// Base colour with the surface's alpha: `base` may be null (white), `passes_texture`, too (1).
+/// glass_of() texel by texel, times the base colour's factor where that cannot stay one: `base` may be null (white),
+/// `passes_texture`, too (1).
 TextureImage glass_image(const TextureImage* base, const TextureImage* passes_texture, const Material& material,
                          float passes) {
   const TextureImage& like = base != nullptr ? *base : *passes_texture;
@@ -48,18 +47,19 @@ TextureImage glass_image(const TextureImage* base, const TextureImage* passes_te
   const auto byte = [](float v) { return std::uint8_t(std::clamp(v * 255.0f + 0.5f, 0.0f, 255.0f)); };
   std::vector<std::uint8_t>& texels = glass.rgba.edit();
   constexpr std::uint8_t white[4] = {255, 255, 255, 255};
+  const bool blended = material.alpha_mode == AlphaMode::blend;
   for (int y = 0; y < like.height; ++y) {
     for (int x = 0; x < like.width; ++x) {
       const std::uint8_t* in = base != nullptr ? texel_at(*base, x, y, like) : white;
       const float red = passes_texture != nullptr ? float(*texel_at(*passes_texture, x, y, like)) / 255.0f : 1.0f;
       glm::vec3 color;
       for (int c = 0; c < 3; ++c) color[c] = srgb_decode(float(in[c]) / 255.0f);
-      const float coverage =
-          material.alpha_mode == AlphaMode::opaque ? 1.0f : material.base_color_factor.a * float(in[3]) / 255.0f;
-      const Covered covered = covered_by(coverage, passes * red, color * glm::vec3(material.base_color_factor));
+      const float coverage = blended ? material.base_color_factor.a * float(in[3]) / 255.0f : 1.0f;
+      if (blended) color *= glm::vec3(material.base_color_factor);
+      const glm::vec4 mixed = glass_of(coverage, passes * red, color);
       std::uint8_t* out = &texels[4 * (size_t(y) * size_t(like.width) + size_t(x))];
-      for (int c = 0; c < 3; ++c) out[c] = byte(srgb_encode(color[c] * covered.reflects));
-      out[3] = byte(covered.stops);
+      for (int c = 0; c < 3; ++c) out[c] = byte(srgb_encode(mixed[c]));
+      out[3] = byte(mixed.a);
     }
   }
   return glass;
@@ -102,8 +102,7 @@ void apply_transmission(const Document& document, const tinygltf::Material& in, 
   }
   if (tells.texture < 0 && !base_textured) {
     const float coverage = material.alpha_mode == AlphaMode::opaque ? 1.0f : material.base_color_factor.a;
-    const Covered covered = covered_by(coverage, passes, glm::vec3(material.base_color_factor));
-    material.base_color_factor = glm::vec4(glm::vec3(material.base_color_factor) * covered.reflects, covered.stops);
+    material.base_color_factor = glass_of(coverage, passes, glm::vec3(material.base_color_factor));
   } else {
     const TextureUse& like = base_textured ? material.base_color : tells;
     const TextureImage* base = base_textured ? &textures.image_of(material.base_color.texture) : nullptr;
@@ -111,9 +110,11 @@ void apply_transmission(const Document& document, const tinygltf::Material& in, 
     TextureUse glass = like;
     glass.texture = textures.add(glass_image(base, passing, material, passes), like.texture);
     material.base_color = glass;
-    material.base_color_factor.a = 1.0f;
+    material.base_color_factor = material.alpha_mode == AlphaMode::blend
+                                     ? glm::vec4(1.0f)
+                                     : glm::vec4(glm::vec3(material.base_color_factor), 1.0f);
   }
-  material.alpha_mode = AlphaMode::blend;
+  material.alpha_mode = AlphaMode::glass;
 }
 
 }  // namespace volgi::gltf

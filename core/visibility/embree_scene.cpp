@@ -4,6 +4,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -39,11 +40,38 @@ struct SharedData {
   float magnitude = 0.0f;  // largest coordinate of the bounds
 };
 
+/// Glass that a ray passed, each triangle once: a traversal asks in any order, may ask twice, and about what lies
+/// behind the end of the ray.
+struct PassedGlass {
+  static constexpr size_t MAX = 32;  // what lies behind more panes than that is coloured by these alone
+  struct At {
+    std::uint32_t mesh, triangle;  // not a TriangleIndex: a ray has no time to initialise what it does not need
+    float distance;
+    glm::vec3 tint;
+  };
+  std::array<At, MAX> panes;
+  size_t count = 0;
+
+  void add(const At& pane) {
+    const auto end = panes.begin() + std::ptrdiff_t(count);
+    const bool known = std::any_of(panes.begin(), end,
+                                   [&](const At& p) { return p.mesh == pane.mesh && p.triangle == pane.triangle; });
+    if (!known && count < MAX) panes[count++] = pane;
+  }
+  glm::vec3 tint(float before) const {
+    glm::vec3 product(1.0f);
+    for (size_t i = 0; i < count; ++i)
+      if (panes[i].distance < before) product *= panes[i].tint;
+    return product;
+  }
+};
+
 struct QueryContext {
   RTCIntersectContext embree;  // first, so that the filter can cast
   const SharedData* shared;
   const Ray* ray;
   float coincident_distance;
+  PassedGlass* glass;
 };
 
 glm::dvec3 unit_normal(const Scene& scene, TriangleIndex index) {
@@ -68,8 +96,11 @@ bool lets_ray_through(const QueryContext& query, TriangleIndex index, float dist
   const Mesh& mesh = scene.meshes[index.mesh];
   const AlphaMode mode = scene.materials[static_cast<size_t>(mesh.material)].alpha_mode;
   if (mode == AlphaMode::opaque) return false;
-  const float alpha = surface_point(scene, mesh, index.triangle, u, v).alpha;
-  return mode == AlphaMode::mask ? alpha <= 0.0f : unit_hash(ray.alpha_seed, index) >= alpha;
+  const SurfacePoint point = surface_point(scene, mesh, index.triangle, u, v);
+  if (mode == AlphaMode::mask) return point.alpha <= 0.0f;
+  const bool passes = unit_hash(ray.alpha_seed, index) >= point.alpha;
+  if (passes && mode == AlphaMode::glass) query.glass->add({index.mesh, index.triangle, distance, point.tint});
+  return passes;
 }
 
 void filter(const RTCFilterFunctionNArguments* args) {
@@ -131,9 +162,10 @@ struct EmbreeScene::Data {
 
   float scale_at(glm::vec3 position) const { return std::max(shared.magnitude, largest_component(position)); }
 
-  QueryContext context(const Ray& ray) const {
+  QueryContext context(const Ray& ray, PassedGlass& glass) const {
     QueryContext query{};
     rtcInitIntersectContext(&query.embree);
+    query.glass = &glass;
     query.shared = &shared;
     query.ray = &ray;
     query.coincident_distance = ray.from.mesh == TriangleIndex::none ? -1.0f : kCoincident * scale_at(ray.origin);
@@ -141,18 +173,26 @@ struct EmbreeScene::Data {
   }
 
   bool intersect(const Ray& ray, float start, RayHit& hit) const {
-    QueryContext query = context(ray);
+    PassedGlass glass;
+    QueryContext query = context(ray, glass);
     RTCRayHit r{};
     r.ray = to_embree(ray, start);
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(embree, &query.embree, &r);
-    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-    hit = {r.ray.tfar, r.hit.geomID, r.hit.primID, r.hit.u, r.hit.v};
-    return true;
+    hit = {r.ray.tfar, r.hit.geomID, r.hit.primID, r.hit.u, r.hit.v, glass.tint(r.ray.tfar)};
+    return r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   }
 
+  glm::vec3 passed(const Ray& ray, float start) const {
+    PassedGlass glass;
+    QueryContext query = context(ray, glass);
+    RTCRay r = to_embree(ray, start);
+    rtcOccluded1(embree, &query.embree, &r);
+    return r.tfar < 0.0f ? glm::vec3(0.0f) : glass.tint(std::numeric_limits<float>::infinity());
+  }
   bool occluded(const Ray& ray, float start) const {
-    QueryContext query = context(ray);
+    PassedGlass glass;
+    QueryContext query = context(ray, glass);
     RTCRay r = to_embree(ray, start);
     rtcOccluded1(embree, &query.embree, &r);
     return r.tfar < 0.0f;
@@ -182,6 +222,8 @@ EmbreeScene::~EmbreeScene() = default;
 bool EmbreeScene::intersect(const Ray& ray, RayHit& hit) const { return data_->intersect(ray, 0.0f, hit); }
 
 bool EmbreeScene::occluded(const Ray& ray) const { return data_->occluded(ray, 0.0f); }
+
+glm::vec3 EmbreeScene::passed(const Ray& ray) const { return data_->passed(ray, 0.0f); }
 
 bool EmbreeScene::intersect(glm::vec3 origin, glm::vec3 direction, float max_distance, std::uint32_t alpha_seed,
                             RayHit& hit) const {

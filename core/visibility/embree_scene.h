@@ -33,12 +33,13 @@ struct RayHit {
   std::uint32_t mesh = 0;  // index into Scene::meshes
   std::uint32_t triangle = 0;
   float u = 0.0f, v = 0.0f;  // barycentric
+  glm::vec3 tint{1.0f};      // of light along the ray: what the glass that it passed leaves, also where it met nothing
   TriangleIndex index() const { return {mesh, triangle}; }
 };
 
 /// Embree's acceleration structure over a scene (which must outlive it). Alpha: MASK is resolved in the traversal,
-/// BLEND lets a ray pass with probability 1 - alpha by hashing `alpha_seed` with the triangle. Thread-safe after
-/// construction; built on one thread, so that no answer depends on how many there are.
+/// BLEND and glass let a ray pass with probability 1 - alpha by hashing `alpha_seed` with the triangle. Thread-safe
+/// after construction; built on one thread, so that no answer depends on how many there are.
 /// @throws Error(over_limit) when memory runs out while building.
 class EmbreeScene {
  public:
@@ -49,6 +50,8 @@ class EmbreeScene {
 
   bool intersect(const Ray& ray, RayHit& hit) const;
   bool occluded(const Ray& ray) const;
+  /// Of light along the ray: 0 where it is occluded, else the tint of the glass that it passes, 1 without any.
+  glm::vec3 passed(const Ray& ray) const;
 
   /// Rays that may start on a surface nobody knows: the first 1e-5 of the scene's size are skipped.
   bool intersect(glm::vec3 origin, glm::vec3 direction, float max_distance, std::uint32_t alpha_seed,

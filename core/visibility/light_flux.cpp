@@ -92,7 +92,7 @@ FluxSample texel_flux(const EmbreeScene& embree, const Layer& layer, glm::ivec2 
   const SurfacePoint at = surface_point(scene, scene.meshes[hit.mesh], hit.triangle, hit.u, hit.v);
   const float window = layer.view.directional != 0 ? 1.0f : shared::range_window(layer.light, hit.distance);
   const bool front = glm::dot(at.geometric_normal, ray.direction) < 0.0f;
-  return {at.position, front ? at.geometric_normal : -at.geometric_normal, ray.power * window * at.albedo};
+  return {at.position, front ? at.geometric_normal : -at.geometric_normal, ray.power * window * at.albedo * hit.tint};
 }
 
 /// One row of texels of a layer.

@@ -80,7 +80,7 @@ VirtualLight end_of(const EmbreeScene& embree, const LightRay& ray, int source, 
   const float squared = sun ? 1.0f : hit.distance * hit.distance;
   const float area_m2 = ray.measure * squared / std::max(std::abs(slope), kMinCosine);
   const glm::vec3 normal = slope < 0.0f ? at.geometric_normal : -at.geometric_normal;
-  return {at.position, area_m2, normal, VIRTUAL_LIGHT_REFLECTED, ray.power * window * at.albedo, source};
+  return {at.position, area_m2, normal, VIRTUAL_LIGHT_REFLECTED, ray.power * window * at.albedo * hit.tint, source};
 }
 
 std::vector<LightRay> rays_of(const Scene& scene, const Light& light, int count) {
@@ -123,7 +123,7 @@ VirtualLightsCpu make_lights(const EmbreeScene& embree, const EmitterPoints& emi
 VirtualLightsCpu virtual_lights_cpu(const EmbreeScene& embree, const EmitterPoints& emitters, int count,
                                     bool along_curve) {
   assert(count >= 1);
-  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count), along_curve);
+  return make_lights(embree, emitters, share_by_power(embree.scene(), emitters.flux(), count, false), along_curve);
 }
 
 }  // namespace volgi

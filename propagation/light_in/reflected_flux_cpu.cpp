@@ -97,7 +97,7 @@ void carry(const EmbreeScene& embree, const std::vector<Sender>& senders, int sa
 FluxSample reflected(const Scene& scene, const Carried& c) {
   const SurfacePoint at = surface_point(scene, scene.meshes[c.hit.mesh], c.hit.triangle, c.hit.u, c.hit.v);
   const bool front = glm::dot(at.geometric_normal, c.way) < 0.0f;
-  return {at.position, front ? at.geometric_normal : -at.geometric_normal, c.flux * at.albedo};
+  return {at.position, front ? at.geometric_normal : -at.geometric_normal, c.flux * c.hit.tint * at.albedo};
 }
 
 }  // namespace

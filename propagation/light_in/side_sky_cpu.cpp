@@ -23,9 +23,8 @@ glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size
     const float cosine = glm::dot(towards, side.normal);
     if (cosine <= 0.0f) continue;
     const std::uint32_t seed = std::uint32_t(s) * 2654435769u + std::uint32_t(sample) * 2246822519u + std::uint32_t(k);
-    if (embree.occluded({start.origin, towards, std::numeric_limits<float>::infinity(), seed, start.from, {}}))
-      continue;
-    sum += cosine * parts[k].irradiance;
+    sum += cosine * parts[k].irradiance *
+           embree.passed({start.origin, towards, std::numeric_limits<float>::infinity(), seed, start.from, {}});
   }
   return sum * float(stride);
 }

@@ -17,7 +17,7 @@ Compose::Compose(glm::ivec2 size)
 }
 
 void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> layers, const gl::Texture* background,
-                  gl::PassTimer& timer) {
+                  gl::PassTimer& timer, const gl::SceneBuffers* scene) {
   const auto scope = timer.scope(name);
   if (layers.size() > MAX_LAYERS) {
     throw Error(ExitCode::over_limit, "a picture of " + std::to_string(layers.size()) + " layers: at most " +
@@ -32,6 +32,13 @@ void Compose::run(const GBuffer& gbuffer, std::span<const gl::Texture* const> la
   const auto behind = std::find(layers.begin(), layers.end(), background);
   program_.set("background_layer", behind == layers.end() ? -1 : int(behind - layers.begin()));
   gl::draw_fullscreen_triangle();
+  if (scene == nullptr || !scene->has_glass()) return;
+  if (!glass_) {
+    glass_.emplace();
+    const std::array colors{gl::Framebuffer::Attachment{&radiance_}};
+    through_glass_ = gl::Framebuffer(colors, {&gbuffer.depth()}, radiance_.size());
+  }
+  glass_->run(*scene, through_glass_, gbuffer.clip_from_world());
 }
 
 }  // namespace volgi::screen

@@ -1,15 +1,28 @@
 #include "screen/base/direct.h"
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "core/gl/raster_state.h"
 
 namespace volgi::screen {
 
-Direct::Direct(glm::ivec2 size, bool shines)
+namespace {
+
+std::vector<std::string> defines(bool shines, bool glass) {
+  std::vector<std::string> list;
+  if (shines) list.emplace_back("SHINES");
+  if (glass) list.emplace_back("GLASS");
+  return list;
+}
+
+}  // namespace
+
+Direct::Direct(glm::ivec2 size, bool shines, bool glass)
     : radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl",
-                                   shines ? std::vector<std::string>{"SHINES"} : std::vector<std::string>{})) {
+      program_(
+          gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl", defines(shines, glass))) {
   const std::array colors{gl::Framebuffer::Attachment{&radiance_}};
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }

@@ -61,8 +61,9 @@ void GBuffer::run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassT
   }
   // What lies `jitter` beside the centre moves onto it.
   const glm::vec3 moved(-2.0f * jitter_ / glm::vec2(size_), 0.0f);
-  program_.set("clip_from_world",
-               glm::translate(glm::mat4(1.0f), moved) * clip_from_camera(camera, size_) * camera_from_world(camera));
+  clip_from_world_ =
+      glm::translate(glm::mat4(1.0f), moved) * clip_from_camera(camera, size_) * camera_from_world(camera);
+  program_.set("clip_from_world", clip_from_world_);
   const bool perspective = camera.kind == Camera::Kind::perspective;
   program_.set("viewer", perspective ? camera.world_from_camera[3] : camera.world_from_camera[2]);
   scene.draw(program_);

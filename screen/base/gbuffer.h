@@ -26,6 +26,7 @@ class GBuffer {
   void set_jitter(glm::vec2 from_centre) { jitter_ = from_centre; }
 
   glm::ivec2 size() const { return size_; }
+  const glm::mat4& clip_from_world() const { return clip_from_world_; }  // of the last run()
   /// Positions, normals and albedo, for shaders with screen/base/gbuffer.glsl.
   void bind() const;
   /// Those of surfaces that shine, beside them.
@@ -50,6 +51,7 @@ class GBuffer {
   glm::ivec2 size_;
   bool shines_;
   glm::vec2 jitter_{0.0f};
+  glm::mat4 clip_from_world_{1.0f};
   gl::Texture depth_, position_, normals_, albedo_, emission_, object_id_, diffuse_, mirror_, directional_albedo_;
   gl::Framebuffer framebuffer_;
   gl::Program program_;

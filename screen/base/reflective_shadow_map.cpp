@@ -23,11 +23,19 @@ ReflectiveShadowMap::Map ReflectiveShadowMap::make_map(int resolution, int layer
     const std::array colors{Attachment{&map.normal, layer}, Attachment{&map.albedo, layer}};
     map.framebuffers.emplace_back(colors, Attachment{&map.depth, layer}, glm::ivec2(resolution));
   }
+  if (!glass_) return map;
+  map.tint = gl::Texture::make_2d_array(GL_RGBA16F, resolution, resolution, layer_count);
+  for (int layer = 0; layer < layer_count; ++layer) {
+    using Attachment = gl::Framebuffer::Attachment;
+    const std::array colors{Attachment{&map.albedo, layer}, Attachment{&map.tint, layer}};
+    map.through_glass.emplace_back(colors, Attachment{&map.depth, layer}, glm::ivec2(resolution));
+  }
   return map;
 }
 
 void ReflectiveShadowMap::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
+  if (buffers.has_glass() && !glass_) glass_.emplace();
   lights_.clear();
   layers_.clear();
   maps_.resize(scene.lights.size());
@@ -51,6 +59,18 @@ void ReflectiveShadowMap::run(const gl::SceneBuffers& buffers, const Scene& scen
   for (int light = 0; light < light_count(); ++light) {
     for (int layer = 0; layer < layer_count(light); ++layer) draw_layer(buffers, maps_[size_t(light)], light, layer);
   }
+  if (glass_) draw_glass(buffers);
+}
+
+void ReflectiveShadowMap::draw_glass(const gl::SceneBuffers& buffers) {
+  constexpr std::array nothing{1.0f, 1.0f, 1.0f, 0.0f};
+  for (size_t light = 0; light < maps_.size(); ++light) {
+    for (size_t layer = 0; layer < maps_[light].through_glass.size(); ++layer) {
+      const gl::Framebuffer& target = maps_[light].through_glass[layer];
+      glClearNamedFramebufferfv(target.id(), GL_COLOR, 1, nothing.data());
+      glass_->run(buffers, target, layers_[size_t(lights_[light].first_layer) + layer].clip_from_world);
+    }
+  }
 }
 
 void ReflectiveShadowMap::draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer) {
@@ -73,11 +93,12 @@ void ReflectiveShadowMap::bind(int light) const {
   map.depth.bind(RSM_DEPTH_UNIT);
   map.normal.bind(RSM_NORMAL_UNIT);
   map.albedo.bind(RSM_ALBEDO_UNIT);
+  if (glass_) map.tint.bind(RSM_TINT_UNIT);
 }
 
 size_t ReflectiveShadowMap::bytes() const {
   size_t sum = light_buffer_.bytes() + layer_buffer_.bytes();
-  const size_t texel_bytes = normal_format_ == GL_RG16_SNORM ? 16 : 20;
+  const size_t texel_bytes = (normal_format_ == GL_RG16_SNORM ? 16 : 20) + (glass_ ? 8 : 0);
   for (const shared::ReflectiveShadowLight& l : lights_) {
     sum += size_t(l.layer_count) * size_t(l.resolution) * size_t(l.resolution) * texel_bytes;
   }
@@ -90,6 +111,7 @@ void ReflectiveShadowMap::list_textures(std::vector<NamedTexture>& list) const {
     list_texture(list, of_light, "depth", maps_[light].depth);
     list_texture(list, of_light, "normals", maps_[light].normal);
     list_texture(list, of_light, "albedo", maps_[light].albedo);
+    list_texture(list, of_light, "tint of glass", maps_[light].tint);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/gl/scene_buffers.h"
 #include "core/light_layers.h"
 #include "core/scene.h"
+#include "screen/base/glass.h"
 #include "screen/base/named_texture.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
@@ -18,7 +20,8 @@ namespace volgi::screen {
 /// Pass "screen/base/reflective_shadow_map": what every punctual light sees. Read it in shaders through
 /// shared/reflective_shadow_map.glsl after bind().
 /// Cost: one draw of the scene per layer (1 for a sun or a spot, 6 for a point light or a spot wider than 60 degrees
-/// from its axis); 16 bytes of GPU memory a texel.
+/// from its axis); 16 bytes of GPU memory a texel, 24 where there is glass. What glass in front does to a texel's light
+/// is in its albedo; points in front of the texel's surface look it up in tint().
 class ReflectiveShadowMap {
  public:
   static constexpr const char* name = "screen/base/reflective_shadow_map";
@@ -46,15 +49,17 @@ class ReflectiveShadowMap {
   const gl::Texture& depth(int light) const { return maps_[size_t(light)].depth; }    // D32F, 0 in the background
   const gl::Texture& normal(int light) const { return maps_[size_t(light)].normal; }  // normal_format, octahedral
   const gl::Texture& albedo(int light) const { return maps_[size_t(light)].albedo; }  // RGBA16
+  const gl::Texture& tint(int light) const { return maps_[size_t(light)].tint; }      // RGBA16F, of scenes with glass
   const std::vector<shared::ReflectiveShadowLight>& lights() const { return lights_; }
   const std::vector<shared::ReflectiveShadowLayer>& layers() const { return layers_; }
 
  private:
   struct Map {
-    gl::Texture depth, normal, albedo;
-    std::vector<gl::Framebuffer> framebuffers;  // one per layer
+    gl::Texture depth, normal, albedo, tint;
+    std::vector<gl::Framebuffer> framebuffers, through_glass;  // one per layer
   };
   Map make_map(int resolution, int layer_count) const;
+  void draw_glass(const gl::SceneBuffers& buffers);
   void draw_layer(const gl::SceneBuffers& buffers, const Map& map, int light, int layer);
 
   Resolution resolution_;
@@ -64,6 +69,7 @@ class ReflectiveShadowMap {
   std::vector<Map> maps_;
   gl::Buffer light_buffer_, layer_buffer_;
   gl::Program program_;
+  std::optional<Glass> glass_;  // where there is some
 };
 
 }  // namespace volgi::screen

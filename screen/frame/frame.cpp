@@ -26,7 +26,7 @@ Frame::Frame(const Scene& scene, const FrameOptions& options, Recipe recipe,
       buffers_(triangles ? std::move(triangles) : std::make_shared<gl::SceneBuffers>(scene)),
       shadow_maps_(options.of<ReflectiveShadowMap::Resolution>()),
       gbuffer_(options.size, GL_RGBA16_SNORM, shines(scene)),
-      direct_(options.size, gbuffer_.shines()),
+      direct_(options.size, gbuffer_.shines(), buffers_->has_glass()),
       compose_(options.size) {
   follow_with_stages();
 }
@@ -120,7 +120,7 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
 }
 
 void Frame::compose(gl::PassTimer& timer) {
-  compose_.run(gbuffer_, shown(), scene_.sky ? &gbuffer_.emission() : nullptr, timer);
+  compose_.run(gbuffer_, shown(), scene_.sky ? &gbuffer_.emission() : nullptr, timer, buffers_.get());
 }
 
 /// Direct light, then indirect, of what --light asks for.

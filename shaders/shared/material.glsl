@@ -7,6 +7,13 @@
 #define MATERIAL_OPAQUE 0
 #define MATERIAL_MASK 1
 #define MATERIAL_BLEND 2
+#define MATERIAL_GLASS 3
+// Defined where what passes glass is coloured by it: screen/base/glass.frag.glsl goes with such a pass.
+#ifdef MATERIAL_TINTED
+#define MATERIAL_PASSES_TINTED 1
+#else
+#define MATERIAL_PASSES_TINTED 0
+#endif
 
 uniform vec4 material_base_color_factor;
 uniform float material_metallic_factor;
@@ -45,10 +52,19 @@ vec4 material_fetch(sampler2D image, int texcoord, mat3 transform, vec2 uv0, vec
 }
 
 // baseColor * COLOR_0, linear; alpha untested.
-vec4 material_base(vec2 uv0, vec2 uv1, vec4 color) {
+vec4 material_base_as_written(vec2 uv0, vec2 uv1, vec4 color) {
+  if (material_alpha_mode == MATERIAL_GLASS) color.a = 1.0;
   return material_base_color_factor * color *
          material_fetch(material_base_color_texture, material_base_color_texcoord, material_base_color_transform, uv0,
                         uv1);
+}
+
+// Of glass, what it reflects of the light that it stops, and how much that is.
+vec4 material_base(vec2 uv0, vec2 uv1, vec4 color) {
+  vec4 base = material_base_as_written(uv0, uv1, color);
+  if (material_alpha_mode != MATERIAL_GLASS) return base;
+  Pane pane = pane_of(base, MATERIAL_PASSES_TINTED);
+  return vec4(base.rgb * pane.reflects, pane.stops);
 }
 
 // What a point is made of. @return perceptual roughness.
@@ -77,7 +93,7 @@ vec3 material_emission(vec2 uv0, vec2 uv1) {
                                                      material_emissive_transform, uv0, uv1).rgb;
 }
 
-// Share of light that the surface stops: 1 when opaque, 0 or 1 for MASK, alpha for BLEND. For voxels.
+// Share of light that the surface stops: 1 when opaque, 0 or 1 for MASK, alpha for BLEND and glass. For voxels.
 float material_coverage(float alpha) {
   if (material_alpha_mode == MATERIAL_OPAQUE) return 1.0;
   if (material_alpha_mode == MATERIAL_MASK) return alpha + ALPHA_CUTOFF_SLACK >= material_alpha_cutoff ? 1.0 : 0.0;

@@ -33,6 +33,31 @@ SHARED_FUNCTION Reflectance reflectance_of(vec3 base, float metallic, vec3 diele
   return r;
 }
 
+// What a pane of glass does to light: `stops` of it meets a surface of the colour base * reflects, the rest goes
+// straight on, times `tint`. base.a * base.rgb of the light passes, where it has no colour in the mean.
+struct Pane {
+  float stops;
+  float reflects;
+  vec3 tint;
+};
+
+// @param base  AlphaMode::glass: baseColor * COLOR_0, and the share that is not reflected. @param tinted  0 where light
+// has no colour on its way: its luminance then decides how much passes, and the tint is 1.
+SHARED_FUNCTION Pane pane_of(vec4 base, int tinted) {
+  vec3 color = min(max(vec3(base.x, base.y, base.z), vec3(0.0f)), vec3(1.0f));
+  float share = min(max(base.w, 0.0f), 1.0f);
+  Pane pane;
+  pane.stops = 1.0f - share;
+  pane.reflects = 1.0f;
+  pane.tint = color;
+  if (tinted == 0) {
+    pane.stops = 1.0f - share * (0.2126f * color.x + 0.7152f * color.y + 0.0722f * color.z);
+    pane.reflects = pane.stops > 0.0f ? (1.0f - share) / pane.stops : 0.0f;
+    pane.tint = vec3(1.0f);
+  }
+  return pane;
+}
+
 // Mean of Schlick's (1 - v.h)^5 over a Lambertian surface's directions of light and view.
 #define SCHLICK_OF_DIFFUSE 0.0036868f
 

@@ -9,7 +9,11 @@ layout(std430, binding = RSM_LIGHTS_SLOT) readonly buffer RsmLights { Reflective
 layout(std430, binding = RSM_LAYERS_SLOT) readonly buffer RsmLayers { ReflectiveShadowLayer rsm_layers[]; };
 layout(binding = RSM_DEPTH_UNIT) uniform sampler2DArray rsm_depth;
 layout(binding = RSM_NORMAL_UNIT) uniform sampler2DArray rsm_normal;  // geometric, octahedral, on the light's side
-layout(binding = RSM_ALBEDO_UNIT) uniform sampler2DArray rsm_albedo;
+layout(binding = RSM_ALBEDO_UNIT) uniform sampler2DArray rsm_albedo;  // coloured by the glass in front of it
+// Set by the program: GLASS, where the scene has some
+#ifdef GLASS
+layout(binding = RSM_TINT_UNIT) uniform sampler2DArray rsm_tint;  // and the depth of the nearest pane
+#endif
 
 // What the light sees through one texel: position on the surface, geometric normal on the light's side, power that
 // arrives there [W] (0 outside a spot's cone), albedo.
@@ -54,22 +58,36 @@ bool rsm_texel_hides(ReflectiveShadowLayer view, int resolution, ivec3 texel, ve
   return dot(d, normal) > error && dot(d, occluder_normal) > error;
 }
 
+// What glass leaves of the light through a texel at distance z [m]: nothing is taken from what lies in front of the
+// nearest pane, or on it, as near as 11 bits tell.
+vec3 rsm_texel_tint(ReflectiveShadowLayer view, ivec3 texel, float z) {
+#ifdef GLASS
+  vec4 pane = texelFetch(rsm_tint, texel, 0);
+  float rounded = (view.directional != 0 ? view.depth_scale_m : z) / 1024.0;
+  bool behind = pane.a > 0.0 && z > rsm_z_from_depth(view, pane.a) + rounded;
+  return behind ? pane.rgb : vec3(1.0);
+#else
+  return vec3(1.0);
+#endif
+}
+
 // Share of the light that reaches `position`, between the four nearest texels. `normal` is the receiver's geometric one
 // on the side that the light shines on.
-float rsm_visibility(int light, vec3 position, vec3 normal) {
+vec3 rsm_visibility(int light, vec3 position, vec3 normal) {
   ReflectiveShadowLight l = rsm_lights[light];
   int layer = rsm_layer_of_direction(l.layer_count, position - l.light.position);
   ReflectiveShadowLayer view = rsm_layers[l.first_layer + layer];
-  vec2 uv = rsm_uvz_from_position(view, position).xy;
-  vec2 at = (uv * 0.5 + 0.5) * float(l.resolution) - 0.5;
+  vec3 uvz = rsm_uvz_from_position(view, position);
+  vec2 at = (uvz.xy * 0.5 + 0.5) * float(l.resolution) - 0.5;
   ivec2 first = ivec2(floor(at));
   vec2 t = at - vec2(first);
-  float visible = 0.0;
+  vec3 visible = vec3(0.0);
   for (int k = 0; k < 4; ++k) {
     ivec2 corner = ivec2(k & 1, k >> 1);
     ivec2 texel = clamp(first + corner, ivec2(0), ivec2(l.resolution - 1));
     vec2 w = mix(1.0 - t, t, vec2(corner));
-    if (!rsm_texel_hides(view, l.resolution, ivec3(texel, layer), position, normal)) visible += w.x * w.y;
+    if (!rsm_texel_hides(view, l.resolution, ivec3(texel, layer), position, normal))
+      visible += w.x * w.y * rsm_texel_tint(view, ivec3(texel, layer), uvz.z);
   }
   return visible;
 }

@@ -11,6 +11,7 @@ SHARED_BEGIN
 #define RSM_DEPTH_UNIT 12
 #define RSM_NORMAL_UNIT 13
 #define RSM_ALBEDO_UNIT 14
+#define RSM_TINT_UNIT 15  // where there is glass
 
 // Texels around a layer that lie outside the light's cone, cube face or bounds, so that the four nearest texels of
 // every lit point exist.

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "core/light_shares.h"
+#include "core/sky.h"
 #include "tests/screen/virtual_light_scenes.h"
 
 namespace volgi::test {
@@ -40,6 +42,23 @@ TEST(LightShares, PowerOfSpotsIsTheIntegralOfTheirFalloff) {
   }
   const Light sun = sun_light({0, -1, 0}, 1.0f);
   EXPECT_NEAR(power_luminance(sun, -kHalf, kHalf) / power_luminance(sun, -kHalf, 3.0f * kHalf), 0.25, 1e-5);
+}
+
+// A room with a lamp in it, on 200 m of ground, in sun and under a sky: the lamp keeps its half.
+TEST(LightShares, WhatIsOutsideDoesNotTakeAll) {
+  Scene scene;
+  scene.bounds_min = {-100, 0, -100};
+  scene.bounds_max = {100, 3, 100};
+  scene.lights = {point_light({0, 2, 0}, 6.0f), sun_light({0, -1, 0}, 3.0f)};
+  scene.sky = std::make_shared<Sky>(glm::vec3(1.0f));
+  const LightShares both = share_by_power(scene, glm::dvec3(0.0), 1000);
+  EXPECT_EQ(both.of_light[0], 500);
+  EXPECT_EQ(both.of_light[1] + both.of_sky, 500);
+  const LightShares without = share_by_power(scene, glm::dvec3(0.0), 1000, false);
+  EXPECT_EQ(without.of_light, (std::vector<int>{500, 500})) << "a sky that is no source takes none";
+  EXPECT_EQ(without.of_sky, 0);
+  scene.lights.erase(scene.lights.begin());
+  EXPECT_EQ(share_by_power(scene, glm::dvec3(0.0), 1000, false).of_light[0], 1000) << "nothing is within";
 }
 
 }  // namespace

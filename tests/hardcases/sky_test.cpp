@@ -148,5 +148,60 @@ TEST_F(SkyPictures, OpenPlane) {
   }
 }
 
+/// A room of 4 x 2.6 x 4 m on ground of 100 m, seen from within.
+Scene on_open_ground(bool roof) {
+  Scene scene;
+  const int grey = add_material(scene, glm::vec3(0.7f));
+  add_quad(scene, grey, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4});
+  add_quad(scene, grey, {-2, 0, -2}, {4, 0, 0}, {0, 2.6f, 0});
+  add_quad(scene, grey, {2, 0, 2}, {-4, 0, 0}, {0, 2.6f, 0});
+  add_quad(scene, grey, {-2, 0, 2}, {0, 0, -4}, {0, 2.6f, 0});
+  add_quad(scene, grey, {2, 0, -2}, {0, 0, 4}, {0, 2.6f, 0});
+  if (roof) add_quad(scene, grey, {-2, 2.6f, -2}, {4, 0, 0}, {0, 0, 4});
+  add_quad(scene, grey, {-50, -0.02f, 50}, {100, 0, 0}, {0, 0, -100});
+  update_bounds(scene);
+  scene.sky = std::make_shared<Sky>(glm::vec3(1.0f));
+  scene.cameras = {look_at_camera({1.7f, 1.5f, 1.8f}, {-0.6f, 0.7f, -1.0f}, 1.0f, scene.bounds_min, scene.bounds_max)};
+  return scene;
+}
+
+Metrics::Relative error_of(const Image& image, const Scene& scene, PathTracerOptions::Light light) {
+  PathTracerOptions paths;
+  paths.size = {image.width, image.height};
+  paths.samples_per_pixel = 64;
+  paths.light = light;
+  const ReferencePicture truth = path_trace(scene, scene.cameras[0], paths);
+  const RegionLayers layers{truth.position, truth.normal, truth.direct, truth.id, truth.depth};
+  return measure(truth.color, image, nullptr, region_mask(Region::noedge, layers)).relative.value();
+}
+
+// Under a sky the ground sends hundreds of times as much as the lamp in a closed room on it, of which the room sees
+// nothing: it keeps its virtual lights (1 of 1024 before) and its bounces (2 orders before). On 200 m: 0.60 of the
+// light before. Cells of 0.8 m.
+TEST_F(SkyPictures, ARoomOnOpenGroundKeepsItsLight) {
+  Scene scene = on_open_ground(true);
+  Light lamp;
+  lamp.position = {0.9f, 2.2f, 0.6f};
+  lamp.intensity = glm::vec3(6.0f);
+  scene.lights = {lamp};
+  screen::FrameOptions o = picture_options("hybrid", {64, 64}, screen::LightPart::indirect);
+  o.of<VolumeOptions>().grid_cells = 128;
+  const auto relative =
+      error_of(render(context(), scene, scene.cameras[0], o).image, scene, PathTracerOptions::Light::indirect);
+  RecordProperty("closed", std::to_string(relative.ratio) + " / " + std::to_string(relative.rmse_pct));
+  EXPECT_NEAR(relative.ratio, 1.0, 0.03);
+}
+
+// Without its roof the sky comes in. Its maps lie over the walls, not over the ground, where a texel would be as wide
+// as half of the room.
+TEST_F(SkyPictures, ACourtOnOpenGroundHasItsShadows) {
+  const Scene scene = on_open_ground(false);
+  const auto relative =
+      error_of(picture(scene, "hybrid", screen::LightPart::direct, {64, 64}), scene, PathTracerOptions::Light::direct);
+  RecordProperty("open", std::to_string(relative.ratio) + " / " + std::to_string(relative.rmse_pct));
+  EXPECT_NEAR(relative.ratio, 1.0, 0.03);
+  EXPECT_LT(relative.rmse_pct, 8.0);
+}
+
 }  // namespace
 }  // namespace volgi::test

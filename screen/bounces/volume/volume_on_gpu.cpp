@@ -110,7 +110,7 @@ class SidesOnGpu : public FrameVolume {
   SidesOnGpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
       : scene_(scene),
         options_(options),
-        rules_(bounce_rules(options, largest_albedo(scene))),
+        rules_(bounce_rules(options, scene)),
         lit_(scene, options),
         bounces_(make_transport_gl(lit_.voxels().grid, options.scheme)),
         gather_(size) {}
@@ -133,7 +133,7 @@ class SidesOnGpu : public FrameVolume {
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool follow_scene() override {
-    rules_ = bounce_rules(options_, largest_albedo(scene_));
+    rules_ = bounce_rules(options_, scene_);
     return lit_.follow_scene();
   }
   bool first_is_apart() const override { return first_is_apart_; }
@@ -236,7 +236,7 @@ size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm
   const size_t transport = linear
                                ? OrdinatesTransportGl::bytes_for(grid, choose_ordinates(grid.cells, scheme), capacity)
                                : ConservativeTransportGl::bytes_for(grid, scheme.sh_order);
-  const BounceRules rules = bounce_rules(options, largest_albedo(scene));
+  const BounceRules rules = bounce_rules(options, scene);
   return bytes + transport + BouncesGl::bytes_for(capacity, rules, linear) + SideIrradianceGl::bytes_for(capacity) +
          VolumeGather::bytes_for(size);
 }

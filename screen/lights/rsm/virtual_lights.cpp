@@ -90,9 +90,8 @@ void VirtualLights::scene_moved() {
 }
 
 LightShares VirtualLights::shares(bool with_sky) const {
-  LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light)
-                                          : share_by_power(scene_, emitters_.flux(), options_.count);
-  if (!with_sky) shares.of_sky = 0;
+  LightShares shares = options_.per_light ? share_equally(scene_, emitters_.flux(), *options_.per_light, with_sky)
+                                          : share_by_power(scene_, emitters_.flux(), options_.count, with_sky);
   // At most kMaxCount each, so that the sum cannot overflow for any number of lights that fits in memory.
   const auto all =
       std::accumulate(shares.of_light.begin(), shares.of_light.end(), std::int64_t(shares.of_sky) + shares.of_emitters);

@@ -14,9 +14,9 @@
 namespace volgi::screen {
 namespace {
 
-void warn_of_coarse_maps(const Scene& scene, int resolution) {
+void warn_of_coarse_maps(const Scene& scene, const SceneBox& box, int resolution) {
   constexpr float COARSE_M = 0.5f;  // half of it is more than most walls are thick
-  const float texel_m = glm::distance(scene.bounds_min, scene.bounds_max) / float(resolution);
+  const float texel_m = glm::distance(box.min, box.max) / float(resolution);
   if (texel_m <= COARSE_M) return;
   warn_once(
       fmt::format("{}: the sky's maps have texels of {:.2g} m: its light may pass walls thinner than half of that; "
@@ -38,14 +38,14 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
   if (!drawn_ || drawn_ != scene.sky) sky_.emplace(scene.sky, parts_asked_);
   layers_.clear();
   parts_ = sky_->lights(sample);
-  for (const SkyLight& light : parts_) {
-    Light sun;
-    sun.type = Light::Type::directional;
-    sun.direction = light.direction;
-    layers_.push_back(reflective_shadow_layers(sun, resolution_, scene.bounds_min, scene.bounds_max).front());
-  }
+  const SceneBox all{scene.bounds_min, scene.bounds_max};
+  const std::optional<SceneBox> detail = 2 * parts_.size() <= SKY_MAX_PARTS ? detail_box(scene) : std::nullopt;
+  for (const SkyLight& light : parts_) layers_.push_back(layer_across(light.direction, resolution_, all, all));
+  for (const SkyLight& light : parts_)
+    if (detail) layers_.push_back(layer_across(light.direction, resolution_, *detail, all));
   upload_parts();
-  warn_of_coarse_maps(scene, resolution_);
+  warn_of_coarse_maps(scene, detail.value_or(all), resolution_);
+  if (buffers.has_glass() && !glass_) glass_.emplace();
   if (framebuffers_.size() != layers_.size()) make_room();
   gl::begin_geometry_pass();
   for (size_t layer = 0; layer < layers_.size(); ++layer) {
@@ -57,20 +57,38 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
     program_.set("viewer", glm::vec4(-layers_[layer].forward, 0.0f));
     buffers.draw(program_);
   }
+  if (glass_) draw_glass(buffers);
   drawn_ = scene.sky;
   drawn_sample_ = sample;
   ++version_;
 }
 
+void SkyMaps::draw_glass(const gl::SceneBuffers& buffers) {
+  constexpr std::array nothing{1.0f, 1.0f, 1.0f, 0.0f};
+  for (size_t layer = 0; layer < layers_.size(); ++layer) {
+    glClearNamedFramebufferfv(through_glass_[layer].id(), GL_COLOR, 0, nothing.data());
+    glass_->run(buffers, through_glass_[layer], layers_[layer].clip_from_world);
+  }
+}
+
 void SkyMaps::make_room() {
   const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
-  depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, part_count());
-  normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, part_count());
+  const auto maps = int(layers_.size());
+  depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, maps);
+  normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, maps);
   framebuffers_.clear();
-  for (int layer = 0; layer < part_count(); ++layer) {
+  for (int layer = 0; layer < maps; ++layer) {
     using Attachment = gl::Framebuffer::Attachment;
     const std::array colors{Attachment{&normal_, layer}};
     framebuffers_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
+  }
+  if (!glass_) return;
+  tint_ = gl::Texture::make_2d_array(GL_RGBA16F, resolution_, resolution_, maps);
+  through_glass_.clear();
+  for (int layer = 0; layer < maps; ++layer) {
+    using Attachment = gl::Framebuffer::Attachment;
+    const std::array colors{Attachment{&tint_, layer}};
+    through_glass_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
   }
 }
 
@@ -88,7 +106,7 @@ void SkyMaps::upload_parts() {
     parts[k].one_column = glm::vec4(l.right * (2.0f * l.extent_x / texels), l.depth_scale_m);
     const float texel_m = 2.0f * std::max(l.extent_x, l.extent_y) / texels;
     parts[k].one_row = glm::vec4(l.up * (2.0f * l.extent_y / texels), texel_m / 256.0f + l.depth_scale_m / 1048576.0f);
-    parts[k].irradiance = glm::vec4(parts_[k].irradiance, 0.0f);
+    parts[k].irradiance = glm::vec4(parts_[k % parts_.size()].irradiance, 0.0f);
   }
   gl::put(part_buffer_, parts);
 }
@@ -97,12 +115,15 @@ void SkyMaps::bind(const gl::Program& program) const {
   part_buffer_.bind_uniform(SKY_PARTS_BLOCK);
   depth_.bind(SKY_DEPTH_UNIT);
   normal_.bind(SKY_NORMAL_UNIT);
+  if (glass_) tint_.bind(SKY_TINT_UNIT);
+  program.set("sky_glass", glass_ ? 1 : 0);
+  program.set("sky_detailed", detailed() ? 1 : 0);
   program.set("sky_resolution", resolution_);
   program.set("part_count", part_count());
 }
 
 size_t SkyMaps::bytes() const {
-  return 8 * size_t(resolution_) * size_t(resolution_) * layers_.size() + part_buffer_.bytes();
+  return (glass_ ? 16 : 8) * size_t(resolution_) * size_t(resolution_) * layers_.size() + part_buffer_.bytes();
 }
 
 }  // namespace volgi::screen

@@ -9,6 +9,7 @@
 #include "core/gl/scene_buffers.h"
 #include "core/scene.h"
 #include "core/sky.h"
+#include "screen/base/glass.h"
 #include "screen/base/named_texture.h"
 #include "shaders/shared/reflective_shadow_map.shared.h"
 
@@ -26,8 +27,9 @@ struct SkyOptions {
 };
 
 /// Pass "screen/sources/sky/sky_maps": the sky as lights that are far away (core/sky.h), each with a map of what it
-/// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Drawn anew only where
-/// sky, scene or sample have changed. Cost then: one draw of the scene a part; 8 bytes of GPU memory a texel.
+/// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Where most of the scene
+/// is bare ground each part has a second map, of what stands on it (detail_box()). Drawn anew only where sky, scene or
+/// sample have changed. Cost then: one draw of the scene a map; 8 bytes of GPU memory a texel, 16 where there is glass.
 class SkyMaps {
  public:
   static constexpr const char* name = "screen/sources/sky/sky_maps";
@@ -41,7 +43,7 @@ class SkyMaps {
   void bind(const gl::Program& program) const;
 
   const std::vector<SkyLight>& parts() const { return parts_; }
-  int part_count() const { return int(layers_.size()); }
+  int part_count() const { return int(parts_.size()); }
   /// Grows whenever the maps change.
   int version() const { return version_; }
   size_t bytes() const;
@@ -52,7 +54,9 @@ class SkyMaps {
 
  private:
   void make_room();
+  void draw_glass(const gl::SceneBuffers& buffers);
   void upload_parts();
+  bool detailed() const { return layers_.size() > parts_.size(); }
 
   int resolution_;
   int parts_asked_;
@@ -61,11 +65,12 @@ class SkyMaps {
   int drawn_sample_ = 0;
   std::optional<SkyParts> sky_;  // of the last sky that was drawn
   std::vector<SkyLight> parts_;
-  std::vector<shared::ReflectiveShadowLayer> layers_;
-  gl::Texture depth_, normal_;
-  std::vector<gl::Framebuffer> framebuffers_;
+  std::vector<shared::ReflectiveShadowLayer> layers_;  // of the parts, and again of the parts where there is detail
+  gl::Texture depth_, normal_, tint_;
+  std::vector<gl::Framebuffer> framebuffers_, through_glass_;
   gl::Buffer part_buffer_;
   gl::Program program_;
+  std::optional<Glass> glass_;  // where there is some
 };
 
 }  // namespace volgi::screen

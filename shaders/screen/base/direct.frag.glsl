@@ -27,7 +27,7 @@ void main() {
   vec3 geometric_normal = octahedral_decode(normals.zw);
   // The light must be on the side of the triangle that the viewer sees.
   if (cosine <= 0.0 || dot(geometric_normal, to_light) <= 0.0 || irradiance == vec3(0.0)) discard;
-  float visibility = rsm_visibility(light, position.xyz, geometric_normal);
+  vec3 visibility = rsm_visibility(light, position.xyz, geometric_normal);
 #ifdef SHINES
   vec4 diffuse = texelFetch(diffuse_map, pixel, 0), mirror = texelFetch(mirror_map, pixel, 0);
   vec3 to_viewer = normalize(viewer.xyz - position.xyz * viewer.w);

@@ -1,6 +1,7 @@
 #version 450 core
 // What the camera sees at the centre of each pixel. Both normals are turned to the viewer's side of the triangle.
 // Set by the program: SHINES, where some material is not Lambertian
+#define MATERIAL_TINTED
 #include "shared/material.glsl"
 #include "shared/octahedral.glsl"
 

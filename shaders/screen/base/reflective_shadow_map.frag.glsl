@@ -1,6 +1,7 @@
 #version 450 core
 // What a light sees in one layer of its map; the depth goes to the depth buffer. Dachsbacher and Stamminger 2005,
 // "Reflective Shadow Maps"; we depart: position follows from depth, and flux from albedo and solid angle.
+#define MATERIAL_TINTED
 #include "shared/material.glsl"
 #include "shared/octahedral.glsl"
 

@@ -1,5 +1,6 @@
 #version 450 core
 // What one part of the sky sees: the normal of the surface, its depth goes to the depth buffer.
+#define MATERIAL_TINTED
 #include "shared/material.glsl"
 #include "shared/octahedral.glsl"
 

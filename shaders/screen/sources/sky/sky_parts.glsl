@@ -7,8 +7,18 @@
 layout(std140, binding = SKY_PARTS_BLOCK) uniform SkyParts { SkyPart sky_parts[SKY_MAX_PARTS]; };
 layout(binding = SKY_DEPTH_UNIT) uniform sampler2DArray sky_depth;
 layout(binding = SKY_NORMAL_UNIT) uniform sampler2DArray sky_normal;  // geometric, octahedral, on the sky's side
+layout(binding = SKY_TINT_UNIT) uniform sampler2DArray sky_tint;      // of glass, and the depth of the nearest pane
+uniform int sky_glass;  // 1 where there is some
+uniform int sky_detailed;  // 1: part k + part_count has the same part's map of what stands on the ground
 uniform int sky_resolution;
 uniform int part_count;
+
+// Texel coordinates, and depth [m].
+vec3 sky_uvz(int part, vec3 position) {
+  return vec3(dot(sky_parts[part].column.xyz, position) + sky_parts[part].column.w,
+              dot(sky_parts[part].row.xyz, position) + sky_parts[part].row.w,
+              dot(sky_parts[part].way.xyz, position) + sky_parts[part].way.w);
+}
 
 // Whether the surface in a texel hides a point from the part, as rsm_texel_hides() of shared/reflective_shadow_map.glsl
 // tells it. @param uvz  the point in the map.
@@ -32,10 +42,14 @@ bool sky_texel_hides(int part, ivec2 texel, vec3 uvz, vec3 position, vec3 geomet
 // a texel, and not than half of one; nothing that one of the four hides is half a texel of shadow too much (8 % of a
 // court's light in maps of 128). Where the texel met nothing, at the rim of the scene, those beside it are asked: what
 // lies inside of a thin slab is not at its rim.
-bool sky_part_visible(int part, vec3 position, vec3 geometric) {
-  vec3 uvz = vec3(dot(sky_parts[part].column.xyz, position) + sky_parts[part].column.w,
-                  dot(sky_parts[part].row.xyz, position) + sky_parts[part].row.w,
-                  dot(sky_parts[part].way.xyz, position) + sky_parts[part].way.w);
+// @param tint  what the glass in front of the point leaves; as rsm_texel_tint().
+bool sky_part_visible(int part, vec3 position, vec3 geometric, out vec3 tint) {
+  int closer = part + sky_detailed * part_count;
+  vec3 uvz = sky_uvz(closer, position);
+  float rim = float(sky_resolution) - 1.0;
+  bool within = min(uvz.x, uvz.y) > 1.0 && max(uvz.x, uvz.y) < rim;
+  if (within) part = closer;
+  else uvz = sky_uvz(part, position);
   ivec2 last = ivec2(sky_resolution - 1);
   ivec2 texel = clamp(ivec2(uvz.xy), ivec2(0), last);
   bool hidden = sky_texel_hides(part, texel, uvz, position, geometric);
@@ -44,6 +58,13 @@ bool sky_part_visible(int part, vec3 position, vec3 geometric) {
   for (int k = 1; k <= beside; ++k) {
     ivec2 corner = clamp(texel + towards * ivec2(k & 1, k >> 1), ivec2(0), last);
     hidden = hidden || sky_texel_hides(part, corner, uvz, position, geometric);
+  }
+  tint = vec3(1.0);
+  for (int k = 0; k < sky_glass; ++k) {
+    vec4 pane = texelFetch(sky_tint, ivec3(texel, part), 0);
+    float range = sky_parts[part].one_column.w;
+    float beyond = uvz.z - (1.0 - pane.a) * range;
+    if (pane.a > 0.0 && beyond > range / 1024.0) tint = pane.rgb;
   }
   return !hidden;
 }
@@ -54,7 +75,9 @@ vec3 sky_irradiance(int first, int step, vec3 position, vec3 normal, vec3 geomet
   for (int part = first; part < part_count; part += step) {
     float cosine = -dot(normal, sky_parts[part].way.xyz);
     bool above = min(cosine, -dot(geometric, sky_parts[part].way.xyz)) > 0.0;
-    if (above && sky_part_visible(part, position, geometric)) sum += cosine * sky_parts[part].irradiance.rgb;
+    vec3 tint;
+    if (above && sky_part_visible(part, position, geometric, tint))
+      sum += tint * (cosine * sky_parts[part].irradiance.rgb);
   }
   return sum;
 }

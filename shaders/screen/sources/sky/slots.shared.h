@@ -7,6 +7,7 @@ SHARED_BEGIN
 #define SKY_PARTS_BLOCK 2
 #define SKY_DEPTH_UNIT 12
 #define SKY_NORMAL_UNIT 13
+#define SKY_TINT_UNIT 14  // where there is glass
 #define SKY_POINTS_SLOT 10
 #define SKY_FLUX_SLOT 10
 #define SKY_IRRADIANCE_IMAGE 0
