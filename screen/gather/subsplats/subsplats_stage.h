@@ -16,7 +16,7 @@ struct SubsplatOptions {
   float difference = 0.001f;  // of illumination, for each_light: of what all lights would give spread evenly
   int cells = 16;             // of the coarsest level along the picture's longer side, at least
   int finest = 1;             // pixels on a side of the finest level's squares: 1, 2, 4 ...
-  float threshold = 0.2f;     // tau of eq. 4.8
+  float threshold = 0.1f;     // tau of eq. 4.8
   LightForm form = LightForm::disk;
   enum class Visibility { none, negative, area_maps } visibility = Visibility::none;
 };
