@@ -81,8 +81,8 @@ nlohmann::json bench_nichols2010(const std::function<Scene(const std::string&)>&
                                  const std::function<void(const std::string&)>& show) {
   Nichols2010Options o = options;
   if (o.quick) {
-    o.sizes = {128};
-    o.error_size = 64;
+    o.sizes = {64};
+    o.error_size = 48;
     o.all_texels = 64;
     o.frames = 1;
     if (o.scenes.empty()) o.scenes = {"cornell"};

@@ -30,8 +30,9 @@ std::vector<std::string> defines(SubsplatRefinement::For lights, LightForm form)
   return all;
 }
 
-int lights_at_once(const SubsplatLevels& levels, SubsplatRefinement::For lights) {
-  if (lights == SubsplatRefinement::For::all_lights) return 1;
+/// Lists by compute have no order, and lights must be added in theirs: one at a time.
+int lights_at_once(const SubsplatLevels& levels, SubsplatRefinement::By by, SubsplatRefinement::For lights) {
+  if (lights == SubsplatRefinement::For::all_lights || by == SubsplatRefinement::By::compute) return 1;
   return int(std::clamp<size_t>(kMostEntries / levels.most_fragments(), 1, VIRTUAL_LIGHTS_PER_BLOCK));
 }
 
@@ -41,7 +42,7 @@ SubsplatRefinement::SubsplatRefinement(const SubsplatLevels& levels, By by, For 
     : levels_(levels),
       by_(by),
       for_(lights),
-      lights_at_once_(screen::lights_at_once(levels, lights)),
+      lights_at_once_(screen::lights_at_once(levels, by, lights)),
       arguments_(sizeof(DrawArguments)),
       nothing_(gl::Framebuffer::without_attachments({1, 1})) {
   const glm::ivec2 coarsest = shared::level_size(levels.size, levels.last);
