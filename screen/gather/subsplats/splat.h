@@ -9,6 +9,7 @@
 #include "screen/gather/subsplats/flattened_buffer.h"
 #include "screen/gather/subsplats/light_cache.h"
 #include "screen/gather/subsplats/stencil_gather.h"
+#include "screen/gather/subsplats/subsplat_receivers.h"
 #include "screen/gather/subsplats/subsplat_refinement.h"
 
 namespace volgi::screen {
@@ -22,17 +23,17 @@ class Splat {
   explicit Splat(LightForm form) : form_(form) {}
 
   /// All lights to one list.
-  void run(const GBuffer& gbuffer, const FlattenedBuffer& target, const LightCache& lights,
+  void run(const SubsplatReceivers& receivers, const FlattenedBuffer& target, const LightCache& lights,
            const SubsplatRefinement& subsplats, const SubsplatVisibility& visibility, gl::PassTimer& timer);
   /// Each light to a list of its own, which is refined in between.
   /// @param most_difference  as SubsplatRefinement::run().
-  void run_each(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps, const FlattenedBuffer& target,
+  void run_each(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps, const FlattenedBuffer& target,
                 const LightCache& lights, SubsplatRefinement& subsplats, float most_difference,
                 const LightClusters* clusters, gl::PassTimer& timer);
 
  private:
-  const gl::Program& program(const std::string& kind, const LightClusters* clusters);
-  void begin(const GBuffer& gbuffer, const FlattenedBuffer& target, const gl::Program& program,
+  const gl::Program& program(const std::string& kind, const LightClusters* clusters, bool shine);
+  void begin(const SubsplatReceivers& receivers, const FlattenedBuffer& target, const gl::Program& program,
              const LightClusters* clusters, FlattenedBuffer::Draw draw);
 
   LightForm form_;

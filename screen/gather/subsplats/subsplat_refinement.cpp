@@ -24,9 +24,11 @@ struct DrawArguments {
   GLuint vertices, instances, first_vertex, first_instance, all;
 };
 
-std::vector<std::string> defines(SubsplatRefinement::For lights, LightForm form) {
+std::vector<std::string> defines(SubsplatRefinement::For lights, LightForm form, bool shine) {
+  if (lights == SubsplatRefinement::For::all_lights) return {};
   std::vector<std::string> all = defines_of(form);
-  if (lights == SubsplatRefinement::For::each_light) all.emplace_back("EACH_LIGHT");
+  all.emplace_back("EACH_LIGHT");
+  if (shine) all.emplace_back("SHINES");
   return all;
 }
 
@@ -38,7 +40,7 @@ int lights_at_once(const SubsplatLevels& levels, SubsplatRefinement::By by, Subs
 
 }  // namespace
 
-SubsplatRefinement::SubsplatRefinement(const SubsplatLevels& levels, By by, For lights, LightForm form)
+SubsplatRefinement::SubsplatRefinement(const SubsplatLevels& levels, By by, For lights, LightForm form, bool shine)
     : levels_(levels),
       by_(by),
       for_(lights),
@@ -57,9 +59,9 @@ SubsplatRefinement::SubsplatRefinement(const SubsplatLevels& levels, By by, For 
   glVertexArrayAttribIFormat(vertices, 0, 2, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(vertices, 0, 0);
   if (by == By::geometry) {
-    step_ = gl::Program::feedback("screen/gather/subsplats/refine", "refined", defines(lights, form));
+    step_ = gl::Program::feedback("screen/gather/subsplats/refine", "refined", defines(lights, form, shine));
   } else {
-    step_ = gl::Program::compute("screen/gather/subsplats/refine.comp.glsl", defines(lights, form));
+    step_ = gl::Program::compute("screen/gather/subsplats/refine.comp.glsl", defines(lights, form, shine));
     arguments_program_ = gl::Program::compute("screen/gather/subsplats/splat_arguments.comp.glsl");
   }
 }
@@ -98,22 +100,23 @@ void SubsplatRefinement::put_coarsest(int first, int count) {
   first_.upload(words.data(), words.size() * sizeof(GLuint));
 }
 
-void SubsplatRefinement::run(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps, gl::PassTimer& timer) {
+void SubsplatRefinement::run(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps,
+                             gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   if (coarsest_ == 0) put_coarsest(0, 1);
-  refine(gbuffer, mipmaps);
+  refine(receivers, mipmaps);
 }
 
-void SubsplatRefinement::run(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps, int first, int count,
-                             float most_difference, gl::PassTimer& timer) {
+void SubsplatRefinement::run(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps, int first,
+                             int count, float most_difference, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   put_coarsest(first, count);
   step_.set("most_difference", most_difference);
-  refine(gbuffer, mipmaps);
+  refine(receivers, mipmaps);
 }
 
-void SubsplatRefinement::refine(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps) {
-  gbuffer.bind();
+void SubsplatRefinement::refine(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps) {
+  receivers.bind(step_);
   mipmaps.bind(step_);
   if (by_ == By::compute) {
     constexpr WorkListHead EMPTY{0, 1, 1, 0};

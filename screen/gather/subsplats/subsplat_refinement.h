@@ -5,10 +5,10 @@
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
-#include "screen/base/gbuffer.h"
 #include "screen/gather/subsplats/discontinuity_mipmaps.h"
 #include "screen/gather/subsplats/light_form.h"
 #include "screen/gather/subsplats/subsplat_levels.h"
+#include "screen/gather/subsplats/subsplat_receivers.h"
 
 namespace volgi::screen {
 
@@ -26,14 +26,15 @@ class SubsplatRefinement {
     compute,   // lists of those that a step looks at
   };
   enum class For { all_lights, each_light };
-  SubsplatRefinement(const SubsplatLevels& levels, By by, For lights, LightForm form);
+  /// @param shine  of For::each_light: receivers may shine.
+  SubsplatRefinement(const SubsplatLevels& levels, By by, For lights, LightForm form, bool shine = false);
 
   /// Once a frame.
-  void run(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps, gl::PassTimer& timer);
+  void run(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps, gl::PassTimer& timer);
   /// For lights [first, first + count) of the block of lights that is bound, at most lights_at_once() of them.
   /// @param most_difference  T: of irradiance between quadrants [W m^-2].
-  void run(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps, int first, int count, float most_difference,
-           gl::PassTimer& timer);
+  void run(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps, int first, int count,
+           float most_difference, gl::PassTimer& timer);
   int lights_at_once() const { return lights_at_once_; }
 
   /// A point for each subsplat, with it (uvec2) as attribute 0, in the current program.
@@ -54,7 +55,7 @@ class SubsplatRefinement {
   };
   List make_list() const;
   void put_coarsest(int first, int count);
-  void refine(const GBuffer& gbuffer, const DiscontinuityMipmaps& mipmaps);
+  void refine(const SubsplatReceivers& receivers, const DiscontinuityMipmaps& mipmaps);
   void step_by_geometry(int step);
   void step_by_compute(int step);
   void bind_vertices(const gl::Buffer& list) const;

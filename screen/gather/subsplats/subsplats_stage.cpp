@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/light_shares.h"
+#include "core/surface.h"
 #include "screen/gather/subsplats/discontinuity_mipmaps.h"
 #include "screen/gather/subsplats/flattened_buffer.h"
 #include "screen/gather/subsplats/light_cache.h"
@@ -86,6 +87,9 @@ constexpr Parameter PARAMETERS[] = {
     choice<Options>(
         {"multires.form", "", "what a light gives: eq. 3.2, the disk of eq. 4.1, or ours"}, FORMS,
         [](Options& o) -> auto& { return o.form; }),
+    yes_no<Options>(
+        {"multires.shine", "", "lights shine on materials as they are (each_light finds highlights), not on matt ones"},
+        [](Options& o) -> auto& { return o.shine; }),
     number<Options>(
         {"multires.threshold", "",
          "tau, of a light's intensity: patches that may give more are divided (hierarchical)"},
@@ -141,13 +145,16 @@ class SubsplatsStage : public Stage {
     if (options_.sum == Options::Sum::gather) return;
     using R = SubsplatRefinement;
     refinement_.emplace(levels_, options_.refine == Options::Refine::geometry ? R::By::geometry : R::By::compute,
-                        options_.each_light ? R::For::each_light : R::For::all_lights, options_.form);
+                        options_.each_light ? R::For::each_light : R::For::all_lights, options_.form,
+                        options_.shine && shines(context.scene));
   }
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const SubsplatVisibility visibility{
         options_.visibility == Options::Visibility::area_maps ? &frame.get<LightClusters>() : nullptr,
         options_.visibility == Options::Visibility::negative ? &frame.get<NegativeLights>() : nullptr};
+    const SubsplatReceivers receivers =
+        options_.shine ? SubsplatReceivers(frame.gbuffer, frame.camera) : SubsplatReceivers(frame.gbuffer);
     mipmaps_.run(frame.gbuffer, frame.camera, frame.scene_diagonal_m, timer);
     if (!hierarchical_) {
       const VirtualAreaLights* clusters = visibility.clusters != nullptr ? &visibility.clusters->area_lights : nullptr;
@@ -155,13 +162,13 @@ class SubsplatsStage : public Stage {
     }
     buffer_.clear();
     if (refinement_) {
-      splat(frame, visibility, timer);
+      splat(frame, receivers, visibility, timer);
     } else {
       buffer_.mark(frame.gbuffer, mipmaps_, timer);
       if (hierarchical_) {
-        gather_.run(frame.gbuffer, buffer_, frame.get<LightPatchTree>(), visibility, timer);
+        gather_.run(receivers, buffer_, frame.get<LightPatchTree>(), visibility, timer);
       } else {
-        gather_.run(frame.gbuffer, buffer_, cache_, visibility, timer);
+        gather_.run(receivers, buffer_, cache_, visibility, timer);
       }
     }
     upsample_.run(frame.gbuffer, frame.camera, buffer_.irradiance(), timer);
@@ -180,15 +187,15 @@ class SubsplatsStage : public Stage {
   }
 
  private:
-  void splat(FrameData& frame, const SubsplatVisibility& visibility, gl::PassTimer& timer) {
+  void splat(FrameData& frame, const SubsplatReceivers& receivers, const SubsplatVisibility& visibility,
+             gl::PassTimer& timer) {
     refinement_->begin_frame();
     if (options_.each_light) {
       const float most_difference = options_.difference * even_irradiance(frame.scene, frame.scene_diagonal_m);
-      splat_.run_each(frame.gbuffer, mipmaps_, buffer_, cache_, *refinement_, most_difference, visibility.clusters,
-                      timer);
+      splat_.run_each(receivers, mipmaps_, buffer_, cache_, *refinement_, most_difference, visibility.clusters, timer);
     } else {
-      refinement_->run(frame.gbuffer, mipmaps_, timer);
-      splat_.run(frame.gbuffer, buffer_, cache_, *refinement_, visibility, timer);
+      refinement_->run(receivers, mipmaps_, timer);
+      splat_.run(receivers, buffer_, cache_, *refinement_, visibility, timer);
     }
   }
 

@@ -18,6 +18,7 @@ struct SubsplatOptions {
   int finest = 1;             // pixels on a side of the finest level's squares: 1, 2, 4 ...
   float threshold = 0.1f;     // tau of eq. 4.8
   LightForm form = LightForm::disk;
+  bool shine = false;  // surfaces reflect as their materials do; else as matt as their albedo
   enum class Visibility { none, negative, area_maps } visibility = Visibility::none;
 };
 

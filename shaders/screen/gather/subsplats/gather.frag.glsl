@@ -34,12 +34,12 @@ vec3 sum_of_lights(Receiver at) {
     int k = lights[i].source;
     vec3 cluster = vec3(0.0);
     for (; i < end && lights[i].source == k; ++i)
-      cluster += lights[i].flux * light_form(lights[i].position, lights[i].normal, lights[i].area_m2, at);
+      cluster += light_at(lights[i], at);
     if (cluster != vec3(0.0)) sum += cluster * area_light_visibility(k, area_lights[k], at.position, at.geometric);
   }
 #else
   for (int i = 0; i < end; ++i)
-    sum += lights[i].flux * light_form(lights[i].position, lights[i].normal, lights[i].area_m2, at);
+    sum += light_at(lights[i], at);
 #endif
   return sum;
 }

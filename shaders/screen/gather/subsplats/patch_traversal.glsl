@@ -21,7 +21,7 @@ vec3 light_of_root(Receiver at, int root) {
     bool down = depth < deepest && dot(w, w) <= near_share * normal.w;
     if (!down) {
       vec3 flux = texelFetch(patch_thirds, at_node + 2).rgb;
-      sum += flux * light_form(place.xyz, normal.xyz, place.w, at);
+      sum += light_at(place.xyz, normal.xyz, place.w, flux, at);
     }
     // Its first part; or the next patch, of a depth above where four are done.
     int up = down ? -1 : min(findLSB(i + 1) / 2, depth);

@@ -24,8 +24,7 @@ bool gives_way(Subsplat s, uint light) {
     Subsplat part = part_of(s, k);
     if (any(greaterThanEqual(part.texel, level_size(picture_size, part.level)))) continue;
     Receiver at = receiver_of(part, picture_size, true);
-    vec3 flux = has_surface(at) ? lights[light].flux : vec3(0.0);
-    vec3 l = flux * light_form(lights[light].position, lights[light].normal, lights[light].area_m2, at);
+    vec3 l = has_surface(at) ? light_at(lights[light], at) : vec3(0.0);
     most = max(most, l);
     least = min(least, l);
   }

@@ -10,7 +10,7 @@
 #define BENDS_IMAGE 3
 #define DISCONTINUITIES_IMAGE 4
 // And read.
-#define DISCONTINUITIES_UNIT 3  // GBUFFER_UNITS
+#define DISCONTINUITIES_UNIT 5  // behind GBUFFER_MIRROR_UNIT
 
 // Refinement: a subsplat and its light each.
 #define SUBSPLATS_IN_SLOT 1
@@ -22,11 +22,8 @@
 #define CACHED_LIGHTS_SLOT 3
 #define CACHE_STARTS_SLOT 4
 #define CACHE_SIZE_SLOT 5
-// Where subsplats meet lights: a block of the cache for all, or all of it for each.
-#define SPLATTED_LIGHTS_SLOT 6
-
 // The tree of patches.
-#define PATCH_TREE_UNIT 4
+#define PATCH_TREE_UNIT 6
 
 // Upsampling.
 #define RENDERED_UNIT 4

@@ -24,7 +24,7 @@ void main() {
 #ifdef NEGATIVE
   irradiance = vec4(sum_of_lights(at), 0.0);
 #else
-  vec3 given = lights[light].flux * light_form(lights[light].position, lights[light].normal, lights[light].area_m2, at);
+  vec3 given = light_at(lights[light], at);
 #ifdef CLUSTERS
   int k = lights[light].source;
   if (given != vec3(0.0)) given *= area_light_visibility(k, area_lights[k], at.position, at.geometric);

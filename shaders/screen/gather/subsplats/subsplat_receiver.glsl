@@ -7,14 +7,15 @@
 
 struct Receiver {
   vec3 position, normal, geometric;
+  ivec2 pixel;  // whose surface it is of
 };
 
 // Of a pixel. Without surface its normal has no length.
 Receiver receiver_at(ivec2 pixel) {
   vec4 position = texelFetch(position_map, pixel, 0);
   vec4 normals = texelFetch(normal_map, pixel, 0);
-  if (position.w == 0.0) return Receiver(vec3(0.0), vec3(0.0), vec3(0.0));
-  return Receiver(position.xyz, octahedral_decode(normals.xy), octahedral_decode(normals.zw));
+  if (position.w == 0.0) return Receiver(vec3(0.0), vec3(0.0), vec3(0.0), pixel);
+  return Receiver(position.xyz, octahedral_decode(normals.xy), octahedral_decode(normals.zw), pixel);
 }
 
 bool has_surface(Receiver at) { return at.normal != vec3(0.0); }
@@ -28,12 +29,12 @@ Receiver receiver_of(Subsplat s, ivec2 size, bool whole) {
   int edge = 1 << s.level;
   ivec2 corner = s.texel * edge, last = min(corner + edge, size) - 1;
   ivec2 middle = corner + edge / 2;
-  Receiver sum = Receiver(vec3(0.0), vec3(0.0), vec3(0.0));
+  Receiver sum = Receiver(vec3(0.0), vec3(0.0), vec3(0.0), middle);
   float count = 0.0;
   for (int k = 0; k < 4; ++k) {
     Receiver at = receiver_at(min(middle - ivec2(k & 1, k >> 1), last));
     if (!has_surface(at) || (!whole && count > 0.0)) continue;
-    sum = Receiver(sum.position + at.position, sum.normal + at.normal, sum.geometric + at.geometric);
+    sum = Receiver(sum.position + at.position, sum.normal + at.normal, sum.geometric + at.geometric, at.pixel);
     count += 1.0;
   }
   for (int i = 0; i < edge * edge && count == 0.0; ++i) {
@@ -43,7 +44,7 @@ Receiver receiver_of(Subsplat s, ivec2 size, bool whole) {
     count = has_surface(sum) ? 1.0 : 0.0;
   }
   if (count == 0.0) return sum;
-  return Receiver(sum.position / count, mean_direction(sum.normal), mean_direction(sum.geometric));
+  return Receiver(sum.position / count, mean_direction(sum.normal), mean_direction(sum.geometric), sum.pixel);
 }
 
 #endif

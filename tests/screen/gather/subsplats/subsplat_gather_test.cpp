@@ -187,6 +187,90 @@ TEST_F(SubsplatGatherTest, AHierarchyEndsInItsRootsAndItsLeaves) {
   EXPECT_LT(some, none);
 }
 
+/// A rough mirror and a matt wall, lit from the floor.
+Scene shining_stage() {
+  Scene scene = stage();
+  const int metal = add_material(scene, {0.9f, 0.6f, 0.3f});
+  scene.materials[size_t(metal)].metallic_factor = 1.0f;
+  scene.materials[size_t(metal)].roughness_factor = 0.3f;
+  add_sphere(scene, metal, {-0.6f, 0.6f, 0.9f}, 0.6f, 24);
+  update_bounds(scene);
+  return scene;
+}
+
+// Eq. 3.2 with any BRDF, in double by the formulas of glTF 2.0, appendix B.
+TEST_F(SubsplatGatherTest, SurfacesShineAsTheirMaterialsDo) {
+  const Scene scene = shining_stage();
+  const Camera camera = stage_camera(scene);
+  const glm::ivec2 size(64, 56);
+  gl::PassTimer timer(context().software(), false);
+  const gl::SceneBuffers buffers(scene);
+  screen::GBuffer gbuffer(size, GL_RGBA16_SNORM, true);
+  gbuffer.run(buffers, camera, timer);
+  const SubsplatLevels levels = SubsplatLevels::of(size, 1000, 1);
+  DiscontinuityMipmaps mipmaps(levels, {});
+  FlattenedBuffer buffer(levels);
+  buffer.clear();
+  buffer.mark(gbuffer, mipmaps, timer);
+  screen::LightCache cache;
+  cache.run(list_of(some_lights()), nullptr, timer);
+  screen::StencilGather(LightForm::disk, 1.0f)
+      .run(screen::SubsplatReceivers(gbuffer, camera), buffer, cache, {}, timer);
+  const std::vector<glm::vec4> got = texels(buffer.irradiance()), positions = texels(gbuffer.position()),
+                               normals = texels(gbuffer.normals()), albedo = texels(gbuffer.albedo()),
+                               diffuse = texels(gbuffer.diffuse()), mirror = texels(gbuffer.mirror());
+  const glm::dvec3 eye(camera.world_from_camera[3]);
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < got.size(); ++i) {
+    if (positions[i].w == 0.0f) continue;
+    const glm::dvec3 x(positions[i]), n = Seen::decoded({normals[i].x, normals[i].y}),
+                                      g = Seen::decoded({normals[i].z, normals[i].w}), v = glm::normalize(eye - x);
+    glm::dvec3 sum(0.0);
+    for (const VirtualLight& l : some_lights()) {
+      const glm::dvec3 to = glm::normalize(glm::dvec3(l.position) - x), h = glm::normalize(v + to);
+      const double form = form_of(LightForm::disk, l, x, n, g);
+      if (!(form > 0.0)) continue;
+      // GGX, height-correlated masking after Smith, Schlick.
+      const double nl = glm::dot(n, to), nv = std::max(glm::dot(n, v), 1e-4), nh = glm::dot(n, h);
+      const double alpha = std::max(std::pow(double(diffuse[i].w), 2.0), 1e-3), a2 = alpha * alpha;
+      const double lobe = nh * nh * (a2 - 1.0) + 1.0, d = a2 / (glm::pi<double>() * lobe * lobe);
+      const double masking =
+          0.5 / (nl * std::sqrt(nv * nv * (1.0 - a2) + a2) + nv * std::sqrt(nl * nl * (1.0 - a2) + a2));
+      const double grazing = std::pow(1.0 - glm::dot(v, h), 5.0);
+      const glm::dvec3 at_0(mirror[i]), fresnel = at_0 + (double(mirror[i].w) - at_0) * grazing;
+      const double left = 1.0 - std::max({fresnel.x, fresnel.y, fresnel.z});
+      const glm::dvec3 brdf = glm::dvec3(diffuse[i]) * left / glm::pi<double>() + fresnel * d * masking;
+      sum += glm::dvec3(l.flux) * form * brdf;  // radiance
+    }
+    const glm::dvec3 radiance = glm::dvec3(got[i]) * glm::dvec3(albedo[i]) / glm::pi<double>();
+    largest = std::max({largest, sum.x, sum.y, sum.z});
+    const glm::dvec3 error = glm::abs(radiance - sum);
+    worst = std::max({worst, error.x, error.y, error.z});
+  }
+  EXPECT_LT(worst, 1e-4 * largest);
+}
+
+// §3.2.3.1: by discontinuities alone a highlight on a smooth surface is missed, by illumination it is found.
+TEST_F(SubsplatGatherTest, IlluminationFindsHighlights) {
+  Scene scene = shining_stage();
+  scene.lights = {spot_light({0.0f, 2.5f, 1.5f}, {0.0f, -1.0f, -0.5f}, 20.0f, 40.0f, 30.0f)};
+  scene.cameras = {stage_camera(scene)};
+  const auto of = [&](std::initializer_list<Setting> set) {
+    screen::FrameOptions o = picture_options("multires", glm::ivec2(64), screen::LightPart::indirect);
+    o.bounces = 1;
+    o.of<screen::SubsplatOptions>().shine = true;
+    for (const Setting& s : set) screen::set_parameter(o.settings, std::string(s.name) + "=" + s.value);
+    return render(context(), scene, scene.cameras[0], o).image;
+  };
+  const Image every = of({{"multires.cells", "16384"}, {"patches.grid", "8"}});
+  // The sphere's normals do not divide it here: thresholds as high as they go.
+  const std::initializer_list<Setting> blind = {
+      {"patches.grid", "8"}, {"multires.criterion", "depth"}, {"multires.depth", "10"}};
+  const std::initializer_list<Setting> seeing = {
+      {"patches.grid", "8"}, {"multires.sum", "splat"}, {"multires.each_light", "on"}, {"multires.difference", "1e-4"}};
+  EXPECT_LT(rmse(every, of(seeing)), 0.5 * rmse(every, of(blind)));
+}
+
 // With a visibility of ours less light arrives, and never less than none.
 TEST_F(SubsplatGatherTest, EveryRecipeTakesOurVisibility) {
   const Scene scene = scene_of("cornell");
