@@ -13,6 +13,7 @@
 #include "apps/bench/dong2009.h"
 #include "apps/bench/gpu.h"
 #include "apps/bench/lattice.h"
+#include "apps/bench/nichols2010.h"
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
@@ -66,6 +67,7 @@ struct BenchCommand {
   void run_voxelize(nlohmann::json& results) const;
   void run_cochran2007(nlohmann::json& results) const;
   void run_dong2009(nlohmann::json& results) const;
+  void run_nichols2010(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
   void run_lattice(nlohmann::json& results) const;
   void run_gpu(nlohmann::json& results) const;
@@ -185,6 +187,17 @@ void BenchCommand::run_dong2009(nlohmann::json& results) const {
                      [this](const std::string& table) { show(table); });
 }
 
+void BenchCommand::run_nichols2010(nlohmann::json& results) const {
+  const gl::Context context(device.context);
+  Nichols2010Options options;
+  options.scenes = scenes;
+  if (size) options.sizes = {*size};
+  options.frames = std::min(frames, options.frames);
+  options.quick = quick;
+  results["nichols2010"] = bench_nichols2010([this](const std::string& name) { return scene(name); }, context, options,
+                                             [this](const std::string& table) { show(table); });
+}
+
 void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
   const gl::Context context(device.context);
   AgainstPathTracingOptions options;
@@ -248,11 +261,15 @@ struct Benchmark {
   const char* name;
   void (BenchCommand::*run)(nlohmann::json&) const;
 };
-constexpr Benchmark kBenchmarks[] = {
-    {"frame", &BenchCommand::run_frames},      {"propagation", &BenchCommand::run_propagation},
-    {"voxelize", &BenchCommand::run_voxelize}, {"cochran2007", &BenchCommand::run_cochran2007},
-    {"dong2009", &BenchCommand::run_dong2009}, {"against-path-tracing", &BenchCommand::run_against_path_tracing},
-    {"lattice", &BenchCommand::run_lattice},   {"gpu", &BenchCommand::run_gpu}};
+constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
+                                     {"propagation", &BenchCommand::run_propagation},
+                                     {"voxelize", &BenchCommand::run_voxelize},
+                                     {"cochran2007", &BenchCommand::run_cochran2007},
+                                     {"dong2009", &BenchCommand::run_dong2009},
+                                     {"nichols2010", &BenchCommand::run_nichols2010},
+                                     {"against-path-tracing", &BenchCommand::run_against_path_tracing},
+                                     {"lattice", &BenchCommand::run_lattice},
+                                     {"gpu", &BenchCommand::run_gpu}};
 
 std::string benchmark_names() {
   std::vector<const char*> names;
@@ -284,8 +301,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "bench",
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
-      "time the CPU's volume against copying memory and OpenVDB; 'cochran2007' and 'dong2009' repeat those papers' "
-      "tables and curve; 'lattice' measures the wave lattice and imperfect maps; 'against-path-tracing' tells how long "
+      "time the CPU's volume against copying memory and OpenVDB; 'cochran2007', 'dong2009' and 'nichols2010' repeat "
+      "those papers' tables and curves; 'lattice' measures the wave lattice and imperfect maps; 'against-path-tracing' "
+      "tells how long "
       "path tracing takes to the error of --gi hybrid; "
       "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
@@ -294,11 +312,13 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--frames", options->frames, "frames measured, after two warm-up frames")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_option("--size", options->size, "pixels on each side [512; dong2009: 800, its curve and lattice 192]")
+  command
+      ->add_option("--size", options->size,
+                   "pixels on each side [512; dong2009: 800, its curve and lattice 192; nichols2010: 512 and 1024]")
       ->check(CLI::Range(16, 8192));
   command
       ->add_option("--scene", options->scenes,
-                   "scenes by name, of frame, dong2009, lattice and against-path-tracing [their own]")
+                   "scenes by name, of frame, dong2009, nichols2010, lattice and against-path-tracing [their own]")
       ->type_name("NAME");
   command->add_option("--curve-vpls", options->curve_lights, "dong2009: numbers of virtual lights of its curve")
       ->check(CLI::Range(2, 65536))
@@ -325,7 +345,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1.0, 1e5))
       ->capture_default_str();
   command->add_flag("--quick", options->quick,
-                    "gpu: cornell alone, small, one frame; tries the benchmark, not the GPU");
+                    "gpu, nichols2010: cornell alone, small, one frame; tries the benchmark, not the GPU");
   command->add_option("-o,--summary", options->page, "gpu: Markdown page to write")->type_name("FILE.md");
   options->device.add_to(*command);
   command->add_flag("--json", options->json, "print JSON");

@@ -255,7 +255,10 @@ Framebuffer::Framebuffer(std::span<const Attachment> colors, Attachment depth, g
     attach(points.back(), color);
   }
   glNamedFramebufferDrawBuffers(id, GLsizei(points.size()), points.data());
-  if (depth.texture != nullptr) attach(GL_DEPTH_ATTACHMENT, depth);
+  if (depth.texture != nullptr) {
+    const bool with_stencil = depth.texture->format() == GL_DEPTH24_STENCIL8;
+    attach(with_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth);
+  }
   const GLenum status = glCheckNamedFramebufferStatus(id, GL_DRAW_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) {
     throw Error(ExitCode::no_device, "this GPU cannot render to the textures of a pass (framebuffer status " +

@@ -131,7 +131,8 @@ class Texture {
   glm::ivec3 size_{0};
 };
 
-/// Framebuffer over whole textures. layer < 0 attaches the whole texture (layered when it has layers).
+/// Framebuffer over whole textures. layer < 0 attaches the whole texture (layered when it has layers). A depth texture
+/// of GL_DEPTH24_STENCIL8 is its stencil, too.
 class Framebuffer {
  public:
   Framebuffer() = default;

@@ -52,8 +52,9 @@ Shader compile(GLenum type, const std::string& file, const std::string& source) 
   return shader;
 }
 
-void link_shaders(GLuint program, std::span<const Shader> shaders, const std::string& name) {
+void link_shaders(GLuint program, std::span<const Shader> shaders, const std::string& name, const char* kept) {
   for (const Shader& shader : shaders) glAttachShader(program, shader.id());
+  if (kept != nullptr) glTransformFeedbackVaryings(program, 1, &kept, GL_INTERLEAVED_ATTRIBS);
   glLinkProgram(program);
   for (const Shader& shader : shaders) glDetachShader(program, shader.id());
   GLint linked = 0;
@@ -72,7 +73,7 @@ struct Program::Stage {
   std::string file;
 };
 
-Program Program::link(const std::vector<Stage>& stages, const std::vector<std::string>& defines) {
+Program Program::link(const std::vector<Stage>& stages, const std::vector<std::string>& defines, const char* kept) {
   const std::string define_text = define_lines(defines);
   std::vector<std::string> sources;
   std::string all;
@@ -86,7 +87,7 @@ Program Program::link(const std::vector<Stage>& stages, const std::vector<std::s
   for (size_t k = 0; k < stages.size(); ++k) shaders.push_back(compile(stages[k].type, stages[k].file, sources[k]));
   Handle<delete_program> linked(glCreateProgram());
   count_object();
-  link_shaders(linked.id(), shaders, stages.back().file);
+  link_shaders(linked.id(), shaders, stages.back().file, kept);
   program.id_ = linked.release();
   return program;
 }
@@ -107,6 +108,11 @@ Program Program::raster(std::string_view vertex_file, std::string_view fragment_
                         const std::vector<std::string>& defines) {
   return link({{GL_VERTEX_SHADER, std::string(vertex_file)}, {GL_FRAGMENT_SHADER, std::string(fragment_file)}},
               defines);
+}
+
+Program Program::feedback(std::string_view base, const char* kept, const std::vector<std::string>& defines) {
+  const std::string name(base);
+  return link({{GL_VERTEX_SHADER, name + ".vert.glsl"}, {GL_GEOMETRY_SHADER, name + ".geom.glsl"}}, defines, kept);
 }
 
 Program::~Program() {

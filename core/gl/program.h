@@ -23,6 +23,8 @@ class Program {
   static Program raster(std::string_view base, const std::vector<std::string>& defines = {});
   static Program raster(std::string_view vertex_file, std::string_view fragment_file,
                         const std::vector<std::string>& defines = {});
+  /// BASE.vert.glsl + BASE.geom.glsl, whose outputs of that name a transform feedback keeps; nothing is drawn.
+  static Program feedback(std::string_view base, const char* kept, const std::vector<std::string>& defines = {});
   ~Program();
   Program(Program&&) noexcept;
   Program& operator=(Program&&) noexcept;
@@ -45,7 +47,8 @@ class Program {
 
  private:
   struct Stage;
-  static Program link(const std::vector<Stage>& stages, const std::vector<std::string>& defines);
+  static Program link(const std::vector<Stage>& stages, const std::vector<std::string>& defines,
+                      const char* kept = nullptr);
   GLint location(const char* name) const;
   GLuint id_ = 0;
   std::string pool_key_;

@@ -3,7 +3,7 @@
 namespace volgi::gl {
 
 /// Every raster pass begins with one of these and relies on nothing that another pass left behind. Both: no culling
-/// (triangles have two sides), no scissor, all channels written, depth from 0 to 1 and row 0 at the bottom.
+/// (triangles have two sides), no scissor, no stencil, all channels written, depth from 0 to 1 and row 0 at the bottom.
 
 /// Geometry with reversed depth: 1 near, 0 far, the greater wins. Clear depth to 0.
 void begin_geometry_pass();

@@ -12,8 +12,10 @@
 #include "screen/gather/interleaved/interleaved_stage.h"
 #include "screen/gather/multires/multires_stage.h"
 #include "screen/gather/strided/strided_stage.h"
+#include "screen/gather/subsplats/subsplats_stage.h"
 #include "screen/lights/lattice/lattice_stage.h"
 #include "screen/lights/light_choice.h"
+#include "screen/lights/patches/patches_stage.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
 #include "screen/sources/sky/sky_stage.h"
@@ -32,12 +34,14 @@ constexpr const StageType* STAGE_TYPES[] = {
     &RSM_LIGHTS,
     &RESAMPLED_LIGHTS,
     &LATTICE_LIGHTS,
+    &LIGHT_PATCHES,
     &NEGATIVE_LIGHTS_STAGE,
     &AREA_MAPS,
     &IMPERFECT_VISIBILITY,
     &STRIDED_GATHER,
     &INTERLEAVED_GATHER,
     &MULTIRES_GATHER,
+    &SUBSPLAT_GATHER,
     &VOLUME,
     &VOLUME_AFTER_FIRST_BOUNCE,
 };
@@ -84,6 +88,21 @@ std::vector<Recipe> make_recipes() {
        {&LATTICE_LIGHTS, &IMPERFECT_VISIBILITY, &STRIDED_GATHER},
        {punctual_first, punctual_higher},
        &prefer_lattice_as_printed},
+      {"multires",
+       "one bounce by a grid of virtual lights, gathered or splatted at many resolutions (Nichols 2010, chapter 3)",
+       {&LIGHT_PATCHES, &NEGATIVE_LIGHTS_STAGE, &AREA_MAPS, &SUBSPLAT_GATHER},
+       {punctual_first},
+       &prefer_light_grid},
+      {"radiosity",
+       "one bounce by patches of light of many sizes, the same for all (Nichols 2010, chapter 4)",
+       {&LIGHT_PATCHES, &NEGATIVE_LIGHTS_STAGE, &AREA_MAPS, &SUBSPLAT_GATHER},
+       {punctual_first},
+       &prefer_light_patches},
+      {"hierarchical",
+       "one bounce by a tree of patches of light, other ones for each fragment (Nichols 2010, chapter 4)",
+       {&LIGHT_PATCHES, &NEGATIVE_LIGHTS_STAGE, &AREA_MAPS, &SUBSPLAT_GATHER},
+       {punctual_first},
+       &prefer_light_hierarchy},
       {"none", "direct light of punctual lights and the sky alone", {&SKY}, {sky_direct}},
   };
 }

@@ -8,6 +8,7 @@ LightPaths reflected_paths(const FrameOptions& options) {
   if (options.of<LightChoice>().stage == LightChoice::Stage::lattice)
     return {LightPath::punctual_first, LightPath::punctual_higher};
   const LightPaths punctual{LightPath::punctual_first};
+  if (options.of<LightChoice>().stage == LightChoice::Stage::patches) return punctual;
   return sky_goes_by_lights(options) ? punctual | LightPaths{LightPath::sky_first} : punctual;
 }
 

@@ -7,7 +7,7 @@ namespace volgi::screen {
 
 /// Which stage's virtual lights a recipe has.
 struct LightChoice {
-  enum class Stage { rsm, lattice } stage = Stage::rsm;
+  enum class Stage { rsm, lattice, patches } stage = Stage::rsm;
 };
 
 /// As a recipe of the wave lattice has it.

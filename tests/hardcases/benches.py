@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""volgi bench against-path-tracing, dong2009 and gpu, tiny: what they measure must hang together.
+"""volgi bench against-path-tracing, dong2009, nichols2010 and gpu, tiny: what they measure must hang together.
 
 benches.py VOLGI SOURCE_FOLDER
 """
@@ -107,11 +107,28 @@ def gpu_without_time(page):
         assert result["skipped"] and len(result["error"]) == 1, result
 
 
+def nichols2010():
+    result = json.loads(bench("nichols2010", "--quick", "--json"))["nichols2010"]
+    three, four = result["chapter_3"], result["chapter_4"]
+    rows = three["table_3_1"]["rows"]
+    # A coarsest subsplat for each light where nothing is refined, more and more where it is.
+    assert rows[0]["subsplats"] == 16**2 * 16**2, rows
+    assert all(a["subsplats"] < b["subsplats"] for a, b in zip(rows, rows[1:])), rows
+    (costs,) = four["table_4_1"]
+    assert costs["gather_ms"]["gather / splat"] < costs["splat_ms"]["gather / splat"], costs
+    assert 256 < costs["fragments"] <= 64**2, costs
+    (errors,) = four["figure_4_9_and_bounds"]
+    eye, light, both = (e["of_mean_percent"] for e in (errors["eye_space"][0]["rms"], errors["light_space"], errors["together"]))
+    assert 0 < eye < 2 and eye < light and abs(both - light) < 2, errors
+    assert all(row["median_percent"] > 0 for row in four["figure_4_5"]), four["figure_4_5"]
+
+
 with tempfile.TemporaryDirectory() as folder:
     gpu(pathlib.Path(folder, "gpu.md"))
     gpu_without_time(pathlib.Path(folder, "gpu.md"))
 with tempfile.TemporaryDirectory() as cache_folder:
     against_path_tracing(cache_folder)
 dong2009()
+nichols2010()
 assert "no benchmark 'dong2010'" in bench("dong2010", code=2)
 assert "atrium_of_nobody" in bench("dong2009", "--scene", "atrium_of_nobody", code=3)

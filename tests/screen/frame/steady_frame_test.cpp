@@ -1,5 +1,6 @@
 // Once a frame runs as the one before, it makes no GL object: no allocation, no compilation in the middle of a picture.
 #include "core/gl/objects.h"
+#include "screen/lights/patches/light_patches.h"
 #include "tests/screen/screen_scene.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
@@ -11,6 +12,7 @@ struct Setting {
   const char* name;
   Gi gi;
   screen::Backend backend = screen::Backend::gpu;
+  std::vector<std::string> set = {};
 };
 
 class SteadyFrame : public GlTest, public testing::WithParamInterface<Setting> {};
@@ -24,7 +26,7 @@ TEST_P(SteadyFrame, MakesNoObjects) {
                   point_light({-1.0f, 1.8f, 0.5f}, 5.0f), sun_light({0.2f, -1.0f, -0.3f}, 1.0f)};
   update_bounds(scene);
   screen::FrameOptions options;
-  options.recipe = GetParam().gi;
+  screen::apply_recipe(std::string(GetParam().gi), options);
   options.backend = GetParam().backend;
   options.size = glm::ivec2(48);
   options.of<screen::ReflectiveShadowMap::Resolution>() = {64, 32, 64};
@@ -33,6 +35,8 @@ TEST_P(SteadyFrame, MakesNoObjects) {
   options.of<screen::NegativeLightOptions>().count = 16;
   options.of<screen::VirtualAreaLightOptions>().count = 16;
   options.of<screen::AreaMapOptions>().texels = 32;
+  options.of<screen::LightPatchOptions>().grid = 4;
+  for (const std::string& set : GetParam().set) screen::set_parameter(options.settings, set);
   options.bounces = 2;
   screen::Frame frame(scene, options);
   gl::PassTimer timer(context().software(), false);
@@ -48,13 +52,21 @@ TEST_P(SteadyFrame, MakesNoObjects) {
   for (int f = 3; f <= 5; ++f) EXPECT_EQ(made_in_next_frame(), 0u) << "frame " << f;
 }
 
-INSTANTIATE_TEST_SUITE_P(, SteadyFrame,
-                         testing::Values(Setting{"none", Gi("none")}, Setting{"volume", Gi("volume")},
-                                         Setting{"volume_on_cpu", Gi("volume"), screen::Backend::cpu},
-                                         Setting{"vpl", Gi("vpl")}, Setting{"negative", Gi("negative")},
-                                         Setting{"val", Gi("val")}, Setting{"hybrid", Gi("hybrid")},
-                                         Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu}),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    , SteadyFrame,
+    testing::Values(
+        Setting{"none", Gi("none")}, Setting{"volume", Gi("volume")},
+        Setting{"volume_on_cpu", Gi("volume"), screen::Backend::cpu}, Setting{"vpl", Gi("vpl")},
+        Setting{"negative", Gi("negative")}, Setting{"val", Gi("val")}, Setting{"hybrid", Gi("hybrid")},
+        Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu}, Setting{"multires", Gi("multires")},
+        Setting{"radiosity", Gi("radiosity")}, Setting{"hierarchical", Gi("hierarchical")},
+        Setting{"splat", Gi("multires"), screen::Backend::gpu, {"multires.sum=splat"}},
+        Setting{"splat_by_compute",
+                Gi("multires"),
+                screen::Backend::gpu,
+                {"multires.sum=splat", "multires.refine=compute", "multires.visibility=area_maps"}},
+        Setting{"splat_each", Gi("multires"), screen::Backend::gpu, {"multires.sum=splat", "multires.each_light=on"}}),
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace volgi::test
