@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "screen/base/base_parameters.h"
+#include "screen/bounces/glossy/glossy_stage.h"
 #include "screen/bounces/volume/volume_stage.h"
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/interleaved_stage.h"
@@ -17,6 +18,7 @@
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
 #include "screen/sources/sky/sky_stage.h"
+#include "screen/sources/textured_area/textured_area_stage.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/imperfect/imperfect_stage.h"
 #include "screen/visibility/negative/negative_stage.h"
@@ -29,6 +31,7 @@ namespace {
 // One line a technique.
 constexpr const StageType* STAGE_TYPES[] = {
     &SKY,
+    &TEXTURED_AREA,
     &RSM_LIGHTS,
     &RESAMPLED_LIGHTS,
     &LATTICE_LIGHTS,
@@ -40,6 +43,7 @@ constexpr const StageType* STAGE_TYPES[] = {
     &MULTIRES_GATHER,
     &VOLUME,
     &VOLUME_AFTER_FIRST_BOUNCE,
+    &GLOSSY,
 };
 
 using enum LightPath;
@@ -59,8 +63,8 @@ std::vector<Recipe> make_recipes() {
   return {
       {"hybrid",
        "the first bounce on the screen by clustered virtual lights, the others through the volume",
-       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER,
-        &VOLUME_AFTER_FIRST_BOUNCE},
+       {&SKY, &TEXTURED_AREA, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER,
+        &VOLUME_AFTER_FIRST_BOUNCE, &GLOSSY},
        LightPaths::all()},
       {"volume", "all light but direct light through the volume", {&VOLUME}, LightPaths::all()},
       {"lpv", "volume --scheme lpv2009", {&VOLUME}, LightPaths::all(), &prefer_lpv},
