@@ -9,6 +9,7 @@
 #include "screen/base/base_parameters.h"
 #include "screen/bounces/glossy/glossy_stage.h"
 #include "screen/bounces/volume/volume_stage.h"
+#include "screen/gather/area/area_stage.h"
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/interleaved_stage.h"
 #include "screen/gather/multires/multires_stage.h"
@@ -22,6 +23,7 @@
 #include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/imperfect/imperfect_stage.h"
 #include "screen/visibility/negative/negative_stage.h"
+#include "screen/visibility/screen_voxels/screen_voxels_stage.h"
 #include "screen/visibility/visibility_choice.h"
 
 namespace volgi::screen {
@@ -38,6 +40,8 @@ constexpr const StageType* STAGE_TYPES[] = {
     &NEGATIVE_LIGHTS_STAGE,
     &AREA_MAPS,
     &IMPERFECT_VISIBILITY,
+    &SCREEN_VOXELS,
+    &AREA_GATHER,
     &STRIDED_GATHER,
     &INTERLEAVED_GATHER,
     &MULTIRES_GATHER,
@@ -88,6 +92,10 @@ std::vector<Recipe> make_recipes() {
        {&LATTICE_LIGHTS, &IMPERFECT_VISIBILITY, &STRIDED_GATHER},
        {punctual_first, punctual_higher},
        &prefer_lattice_as_printed},
+      {"area",
+       "light straight from emissive surfaces, textures kept, by lights on them seen through voxels (Nichols 2010)",
+       {&TEXTURED_AREA, &SCREEN_VOXELS, &AREA_GATHER},
+       {emission_direct}},
       {"none", "direct light of punctual lights and the sky alone", {&SKY}, {sky_direct}},
   };
 }
