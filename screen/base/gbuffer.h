@@ -14,7 +14,7 @@ namespace volgi::screen {
 
 /// Where a stage adds what mirrors of facets reflect (LightShare::mirror).
 struct MirrorApart {
-  float least = 0.1f;  // of even light that one reflects to the viewer: below it, pixels keep it in albedo()
+  float least = 0.1f;  // of even light that one reflects to the viewer: below it albedo() has it, at twice it nothing
 };
 
 /// Pass "screen/base/gbuffer": what the camera sees at the centre of each pixel. Texel (0,0) is the bottom left one.
@@ -31,7 +31,7 @@ class GBuffer {
   /// Where in its pixel every sample lies, from the centre. [pixels]
   void set_jitter(glm::vec2 from_centre) { jitter_ = from_centre; }
 
-  /// From which reflectance towards the viewer on a pixel's mirror is not in albedo(); none: it always is.
+  /// From which reflectance towards the viewer on a pixel's mirror leaves albedo(); none: it is all there.
   void set_mirror_apart(std::optional<float> least) { mirror_apart_ = least; }
 
   glm::ivec2 size() const { return size_; }
@@ -47,7 +47,7 @@ class GBuffer {
     return normals_;
   }  // normal_format: octahedral shading (xy), geometric (zw)
      // normal, both on the viewer's side of the triangle
-  // RGBA16, linear: of even light, what goes to the viewer; alpha 0 where its mirror's part is left out, else 1
+  // RGBA16, linear: of even light, what goes to the viewer; alpha: the share of the mirror's part that is in it
   const gl::Texture& albedo() const { return albedo_; }
   const gl::Texture& diffuse() const { return diffuse_; }    // RGBA16: shared::Reflectance, and perceptual roughness
   const gl::Texture& mirror() const { return mirror_; }      // RGBA16: reflectance from in front, at grazing angles

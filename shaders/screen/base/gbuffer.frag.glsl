@@ -27,16 +27,18 @@ layout(binding = DIRECTIONAL_ALBEDO_UNIT) uniform sampler2D directional_albedo;
 uniform float least_mirror_apart;
 
 // Of even light, all that goes to the viewer: by directional_albedo.h, and what of Schlick's (1 - v.h)^5 a diffuse
-// surface sees in the mean (a polynomial of the cosine, within 4e-6). Alpha: 0 where the mirror is left out.
+// surface sees in the mean (a polynomial of the cosine, within 4e-6). Alpha: the share of the mirror that is in it.
 vec4 albedo_to_viewer(Reflectance r, float roughness, float cosine) {
   float c = clamp(cosine, 0.0, 1.0);
   float grazing = (((0.00907138 * c - 0.04386464) * c + 0.08659765) * c - 0.07987975) * c + 0.02815884;
   float front = max(max(r.at_0.r, r.at_0.g), r.at_0.b);
   vec2 mirror = textureLod(directional_albedo, vec2(c, clamp(roughness, 0.0, 1.0)), 0.0).rg;
   vec3 facets = r.at_0 * mirror.x + vec3(r.at_90 * mirror.y);
-  bool apart = max(max(facets.r, facets.g), facets.b) >= least_mirror_apart;
+  // From none to all of it within as much again, so that no edge shows.
+  float apart = max(max(facets.r, facets.g), facets.b) / max(least_mirror_apart, 1e-4) - 1.0;
+  float kept = 1.0 - clamp(apart, 0.0, 1.0);
   vec3 diffuse = r.diffuse * (1.0 - (front + (r.at_90 - front) * grazing));
-  return apart ? vec4(diffuse, 0.0) : vec4(diffuse + facets, 1.0);
+  return vec4(diffuse + kept * facets, kept);
 }
 #endif
 

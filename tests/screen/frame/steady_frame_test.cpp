@@ -52,7 +52,8 @@ INSTANTIATE_TEST_SUITE_P(, SteadyFrame,
                          testing::Values(Setting{"none", Gi("none")}, Setting{"volume", Gi("volume")},
                                          Setting{"volume_on_cpu", Gi("volume"), screen::Backend::cpu},
                                          Setting{"vpl", Gi("vpl")}, Setting{"negative", Gi("negative")},
-                                         Setting{"val", Gi("val")}, Setting{"hybrid", Gi("hybrid")},
+                                         Setting{"val", Gi("val")}, Setting{"area", Gi("area")},
+                                         Setting{"hybrid", Gi("hybrid")},
                                          Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu}),
                          [](const auto& test) { return test.param.name; });
 

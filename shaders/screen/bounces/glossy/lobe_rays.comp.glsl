@@ -169,7 +169,8 @@ void main() {
   if (any(greaterThanEqual(pixel, textureSize(position_map, 0)))) return;
   vec4 position = texelFetch(position_map, pixel, 0);
   vec4 d = vec4(0.0), i = vec4(0.0);
-  if (position.w != 0.0 && texelFetch(albedo_map, pixel, 0).a < 0.5) {
+  float apart = 1.0 - texelFetch(albedo_map, pixel, 0).a;
+  if (position.w != 0.0 && apart > 0.0) {
     vec4 normals = texelFetch(normal_map, pixel, 0), mirror = texelFetch(mirror_map, pixel, 0);
     float roughness = texelFetch(diffuse_map, pixel, 0).a;
     Lobe s;
@@ -185,8 +186,8 @@ void main() {
     ivec2 place = pixel % interleave;
     int subset = place.x + interleave * place.y;
     Seen seen = by_rays(s, subset);
-    d = vec4(seen.direct + by_lights(s, subset), 1.0);
-    i = vec4(seen.indirect, 1.0);
+    d = vec4(apart * (seen.direct + by_lights(s, subset)), 1.0);
+    i = vec4(apart * seen.indirect, 1.0);
     atomicAdd(glossy_pixels, 1u);
     if (roughness < least_roughness - 1e-4) atomicAdd(clamped_pixels, 1u);
   }

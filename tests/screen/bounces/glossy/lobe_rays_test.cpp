@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "core/gl/objects.h"
 #include "propagation/volume_options.h"
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
@@ -118,6 +119,18 @@ TEST_F(LobeRays, AFloorBesideALampAsTraced) {
 TEST_F(LobeRays, WhatIsNarrowerIsWidenedAndSaidSo) {
   const Rendered r = seen(beside_a_lamp(0.05f), options(2));
   EXPECT_EQ(r.report.number("glossy_widened_share"), 1.0);
+}
+
+TEST_F(LobeRays, ASteadyFrameMakesNoObjects) {
+  const Scene scene = beside_a_lamp(0.4f);
+  screen::FrameOptions o = options(2);
+  o.backend = screen::Backend::cpu;
+  screen::Frame frame(scene, o);
+  gl::PassTimer timer(context().software(), false);
+  for (int k = 0; k < 2; ++k) frame.render(inside(scene), timer);
+  const std::uint64_t before = gl::objects_made();
+  frame.render(inside(scene), timer);
+  EXPECT_EQ(gl::objects_made(), before);
 }
 
 // Rays through blocked faces know no orders of reflection.
