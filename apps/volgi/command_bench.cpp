@@ -14,6 +14,7 @@
 #include "apps/bench/gpu.h"
 #include "apps/bench/lattice.h"
 #include "apps/bench/nichols2010.h"
+#include "apps/bench/nichols2010_area.h"
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
 #include "apps/bench/voxelize.h"
@@ -70,6 +71,7 @@ struct BenchCommand {
   void run_nichols2010(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
   void run_lattice(nlohmann::json& results) const;
+  void run_nichols2010_area(nlohmann::json& results) const;
   void run_gpu(nlohmann::json& results) const;
   std::string gpu_command() const;
   std::vector<std::string> scenes_or(const std::vector<std::string>& usual) const {
@@ -224,6 +226,16 @@ void BenchCommand::run_lattice(nlohmann::json& results) const {
                                      [this](const std::string& table) { show(table); });
 }
 
+void BenchCommand::run_nichols2010_area(nlohmann::json& results) const {
+  const gl::Context context(device.context);
+  NicholsAreaBenchOptions options;
+  options.size = size.value_or(options.size);
+  options.frames = frames;
+  options.data = data;
+  results["nichols2010_area"] =
+      bench_nichols2010_area(context, options, [this](const std::string& table) { show(table); });
+}
+
 std::string BenchCommand::gpu_command() const {
   std::string text = fmt::format("volgi bench gpu --frames {} --budget {:g}", quick ? 1 : frames, budget_s);
   if (quick) text += " --quick";
@@ -269,6 +281,7 @@ constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
                                      {"nichols2010", &BenchCommand::run_nichols2010},
                                      {"against-path-tracing", &BenchCommand::run_against_path_tracing},
                                      {"lattice", &BenchCommand::run_lattice},
+                                     {"nichols2010_area", &BenchCommand::run_nichols2010_area},
                                      {"gpu", &BenchCommand::run_gpu}};
 
 std::string benchmark_names() {
@@ -302,8 +315,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "bench",
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
       "time the CPU's volume against copying memory and OpenVDB; 'cochran2007', 'dong2009' and 'nichols2010' repeat "
-      "those papers' tables and curves; 'lattice' measures the wave lattice and imperfect maps; 'against-path-tracing' "
-      "tells how long "
+      "those papers' tables and curves, 'nichols2010_area' that thesis' figures on area lights; 'lattice' measures the "
+      "wave lattice and imperfect maps; 'against-path-tracing' tells how long "
       "path tracing takes to the error of --gi hybrid; "
       "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
@@ -314,7 +327,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command
       ->add_option("--size", options->size,
-                   "pixels on each side [512; dong2009: 800, its curve and lattice 192; nichols2010: 512 and 1024]")
+                   "pixels on each side [512; dong2009: 800, its curve, lattice and nichols2010_area 192; nichols2010: "
+                   "512 and 1024]")
       ->check(CLI::Range(16, 8192));
   command
       ->add_option("--scene", options->scenes,

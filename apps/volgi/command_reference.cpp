@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/volgi/area_video.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/scene_options.h"
 #include "core/atomic_file.h"
@@ -25,6 +26,7 @@ namespace {
 
 struct ReferenceOptions {
   SceneOptions scene;
+  AreaVideo video;
   std::filesystem::path output;
   PathTracerOptions tracer;
   std::optional<int> bounces;
@@ -39,19 +41,25 @@ PathTracerOptions::Light requested_light(const std::string& light) {
   return light == "indirect" ? PathTracerOptions::Light::indirect : PathTracerOptions::Light::full;
 }
 
-ReferencePicture traced(const ReferenceOptions& options) {
+Scene scene_of(ReferenceOptions& options) {
+  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s, options.scene.file.reading);
+  options.video.show(scene, options.scene.time_s);
+  options.scene.light.apply(scene);
+  return scene;
+}
+
+ReferencePicture traced(ReferenceOptions& options) {
   PathTracerOptions tracer = options.tracer;
   tracer.size = options.scene.size();
   tracer.max_bounces = options.bounces;
   tracer.light = requested_light(options.light);
   if (options.filter == "box") tracer.filter = PathTracerOptions::Filter::box;
-  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s, options.scene.file.reading);
-  options.scene.light.apply(scene);
+  const Scene scene = scene_of(options);
   warn_of_open_scene(scene, glm::vec3(options.scene.camera(scene).world_from_camera[3]));
   return path_trace(scene, options.scene.camera(scene), tracer);
 }
 
-ReferencePicture gathered(const ReferenceOptions& options) {
+ReferencePicture gathered(ReferenceOptions& options) {
   if (options.filter != "point")
     throw Error(ExitCode::usage, "--filter box: --vpls gathers at pixel centres only, leave --filter out");
   VirtualLightGatherOptions gather;
@@ -61,12 +69,11 @@ ReferencePicture gathered(const ReferenceOptions& options) {
   gather.threads = options.tracer.threads;
   if (options.visibility == "none") gather.visibility = VirtualLightGatherOptions::Visibility::none;
   const VirtualLightList list = read_virtual_lights(*options.virtual_lights);
-  Scene scene = load_scene(options.scene.scene_path, options.scene.time_s, options.scene.file.reading);
-  options.scene.light.apply(scene);
+  const Scene scene = scene_of(options);
   return gather_virtual_lights(scene, options.scene.camera(scene), list, gather);
 }
 
-void render(const ReferenceOptions& options) {
+void render(ReferenceOptions& options) {
   set_quiet(options.quiet);
   if (options.output.extension() != ".exr")
     throw Error(ExitCode::usage,
@@ -93,6 +100,7 @@ void add_reference_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ReferenceOptions>();
   CLI::App& command = *app.add_subcommand("reference", "Path-traced reference picture of a scene (Embree, CPU)");
   options->scene.add_to(command);
+  options->video.add_to(command);
   command.add_option("-o,--output", options->output, "EXR file to write")->required();
   CLI::Option* spp =
       command.add_option("--spp", options->tracer.samples_per_pixel, "samples per pixel, rounded up to an even number")

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
+#include <optional>
 
+#include "apps/volgi/area_video.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_options.h"
@@ -42,6 +44,7 @@ struct RenderCommand {
   int frames = 1;
   std::optional<int> samples;  // none: 1, or 8 without jitter where something is half transparent
   std::string animate;         // T0:T1:FPS; empty: one picture
+  AreaVideo video;
   bool whole_animation = false;
   DeviceOptions device;
 
@@ -53,8 +56,9 @@ struct RenderCommand {
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
   TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer, bool software);
-  TimedFrames render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                               const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer, bool software);
+  TimedFrames render_animation(std::optional<screen::Frame>& picture, const screen::FrameOptions& options,
+                               const SceneSource& source, Scene& moving, const FrameTimes& times, const WorldBox& box,
+                               gl::PassTimer& timer, bool software);
   bool writes_png() const { return out.extension() == ".png"; }
   void light(Scene& loaded, const Camera& camera) const;
   void read_exposure();
@@ -193,9 +197,9 @@ TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loa
 }
 
 /// Each picture is written, whole, before the next one begins.
-TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneSource& source, Scene& moving,
-                                            const FrameTimes& times, const WorldBox& box, gl::PassTimer& timer,
-                                            bool software) {
+TimedFrames RenderCommand::render_animation(std::optional<screen::Frame>& picture, const screen::FrameOptions& options,
+                                            const SceneSource& source, Scene& moving, const FrameTimes& times,
+                                            const WorldBox& box, gl::PassTimer& timer, bool software) {
   TimedFrames timed{1, false, {}};
   Progress progress("render", std::uint64_t(times.count));
   for (int k = 0; k < times.count; ++k) {
@@ -205,11 +209,15 @@ TimedFrames RenderCommand::render_animation(screen::Frame& picture, const SceneS
       source.move(moving, times.at(k), box);
       light(moving, scene.camera(moving));
     }
-    picture.follow_scene(timer);
-    picture.render(scene.camera(moving), timer);
+    if (video.show(moving, times.at(k))) {
+      picture.emplace(moving, options);  // nothing that is kept follows images
+    } else {
+      picture->follow_scene(timer);
+    }
+    picture->render(scene.camera(moving), timer);
     timer.end_frame();
     if (k == 0) timed.cold = cold_frame(timer);
-    write_picture(all_samples(picture, moving, scene.camera(moving), software), frame_path(out, k));
+    write_picture(all_samples(*picture, moving, scene.camera(moving), software), frame_path(out, k));
     progress.advance();
     if (k == 0 && times.count > 1) {
       timer.reset();
@@ -243,26 +251,27 @@ int RenderCommand::run() {
   const SceneSource source(scene.scene_path, scene.file.reading);
   const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
   Scene loaded = animate.empty() && !whole_animation ? source.at(scene.time_s) : source.at(times.at(0), box);
+  video.show(loaded, animate.empty() ? scene.time_s : times.at(0));
   frame.volume.fit_grid(loaded, options.of<VolumeOptions>());
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
-  screen::Frame picture(loaded, options);
+  std::optional<screen::Frame> picture(std::in_place, loaded, options);
   warn_of_open_scene(loaded, glm::vec3(camera.world_from_camera[3]));
-  for (const std::string& line : picture.announcements()) {
+  for (const std::string& line : picture->announcements()) {
     if (!quiet) fmt::print("{}\n", line);
   }
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
   const TimedFrames timed_frames =
-      animate.empty() ? render_still(picture, loaded, timer, context.software())
-                      : render_animation(picture, source, loaded, times, box, timer, context.software());
-  const auto figures = numbers(picture, options, loaded, context, timer, timed_frames);
+      animate.empty() ? render_still(*picture, loaded, timer, context.software())
+                      : render_animation(picture, options, source, loaded, times, box, timer, context.software());
+  const auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
   }
-  if (!dump.empty()) write_virtual_lights(lights_file(), picture.virtual_lights());
+  if (!dump.empty()) write_virtual_lights(lights_file(), picture->virtual_lights());
   if (!quiet) {
     const int last = times.count - 1;
     fmt::print("{}wrote {}\n", pass_table(figures),
@@ -298,6 +307,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
                        "a picture for each frame from T0 to T1 [s], OUT.0000.png and so on; where -o has %04d, there")
           ->type_name("T0:T1:FPS")
           ->excludes(command->get_option("--time"));
+  options->video.add_to(*command);
   command->add_flag("--whole-animation", options->whole_animation,
                     "the volume's grid is around all that moves at any time, not only at those that are rendered");
   command

@@ -196,8 +196,8 @@ void warn_of_metals(const Document& document, const std::vector<Material>& mater
   const size_t index = size_t(metal - materials.begin());
   const bool in_file = index < document.model.materials.size();
   const std::string who = in_file ? element("material", index, metal->name) : "glTF's default material";
-  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default): light of other surfaces "
-                                  "reflects from it as if it were diffuse",
+  warn(document.path, fmt::format("{} is a metal (metallicFactor 1, glTF's default): what it reflects on "
+                                  "other surfaces is spread as if it were diffuse",
                                   who));
 }
 

@@ -58,6 +58,7 @@ void GBuffer::run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassT
   if (shines_) {
     for (GLint i : {5, 6}) glClearNamedFramebufferfv(framebuffer_.id(), GL_COLOR, i, zero.data());
     directional_albedo_.bind(DIRECTIONAL_ALBEDO_UNIT);
+    program_.set("least_mirror_apart", mirror_apart_.value_or(2.0f));  // more than there is
   }
   // What lies `jitter` beside the centre moves onto it.
   const glm::vec3 moved(-2.0f * jitter_ / glm::vec2(size_), 0.0f);

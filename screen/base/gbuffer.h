@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/camera.h"
@@ -10,6 +11,11 @@
 #include "screen/base/named_texture.h"
 
 namespace volgi::screen {
+
+/// Where a stage adds what mirrors of facets reflect (LightShare::mirror).
+struct MirrorApart {
+  float least = 0.1f;  // of even light that one reflects to the viewer: below it albedo() has it, at twice it nothing
+};
 
 /// Pass "screen/base/gbuffer": what the camera sees at the centre of each pixel. Texel (0,0) is the bottom left one.
 /// Cost: one draw of the scene.
@@ -25,6 +31,9 @@ class GBuffer {
   /// Where in its pixel every sample lies, from the centre. [pixels]
   void set_jitter(glm::vec2 from_centre) { jitter_ = from_centre; }
 
+  /// From which reflectance towards the viewer on a pixel's mirror leaves albedo(); none: it is all there.
+  void set_mirror_apart(std::optional<float> least) { mirror_apart_ = least; }
+
   glm::ivec2 size() const { return size_; }
   const glm::mat4& clip_from_world() const { return clip_from_world_; }  // of the last run()
   /// Positions, normals and albedo, for shaders with screen/base/gbuffer.glsl.
@@ -39,7 +48,7 @@ class GBuffer {
     return normals_;
   }  // normal_format: octahedral shading (xy), geometric (zw)
      // normal, both on the viewer's side of the triangle
-  // RGBA16, linear: of even light, what goes to the viewer
+  // RGBA16, linear: of even light, what goes to the viewer; alpha: the share of the mirror's part that is in it
   const gl::Texture& albedo() const { return albedo_; }
   const gl::Texture& diffuse() const { return diffuse_; }    // RGBA16: shared::Reflectance, and perceptual roughness
   const gl::Texture& mirror() const { return mirror_; }      // RGBA16: reflectance from in front, at grazing angles
@@ -52,6 +61,7 @@ class GBuffer {
   bool shines_;
   glm::vec2 jitter_{0.0f};
   glm::mat4 clip_from_world_{1.0f};
+  std::optional<float> mirror_apart_;
   gl::Texture depth_, position_, normals_, albedo_, emission_, object_id_, diffuse_, mirror_, directional_albedo_;
   gl::Framebuffer framebuffer_;
   gl::Program program_;

@@ -1,6 +1,8 @@
 #include "screen/base/sky_seen.h"
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/gl/raster_state.h"
@@ -10,12 +12,14 @@ namespace volgi::screen {
 namespace {
 
 gl::Texture upload(const Image& image) {
-  gl::Texture t = gl::Texture::make_2d(GL_RGBA32F, image.width, image.height);
+  const int levels = int(std::bit_width(unsigned(std::max(image.width, image.height))));
+  gl::Texture t = gl::Texture::make_2d(GL_RGBA32F, image.width, image.height, levels);
   std::vector<glm::vec4> texels;
   texels.reserve(image.pixels.size());
   for (const glm::vec3& p : image.pixels) texels.emplace_back(p, 1.0f);
   glTextureSubImage2D(t.id(), 0, 0, 0, image.width, image.height, GL_RGBA, GL_FLOAT, texels.data());
-  t.filter(GL_LINEAR, GL_LINEAR);
+  glGenerateTextureMipmap(t.id());
+  t.filter(GL_LINEAR_MIPMAP_LINEAR, GL_LINEAR);
   t.wrap(GL_REPEAT, GL_CLAMP_TO_EDGE);
   return t;
 }

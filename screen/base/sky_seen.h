@@ -16,6 +16,8 @@ class SkySeen {
   /// @param gbuffer  must outlive this.
   explicit SkySeen(const GBuffer& gbuffer);
   void run(const Sky& sky, const Camera& camera, gl::PassTimer& timer);
+  /// Latitude-longitude, RGBA32F with all mipmaps [W m^-2 sr^-1]: shaders/screen/base/sky_picture.glsl.
+  const gl::Texture& picture() const { return picture_; }
   size_t bytes() const { return 16 * size_t(picture_.size().x) * size_t(picture_.size().y); }
 
  private:

@@ -43,8 +43,9 @@ void Frame::follow_scene(gl::PassTimer& timer) {
 
 /// Stages that the picture needs now: those there are follow, others are made.
 void Frame::follow_with_stages() {
-  const Plan plan = plan_picture(recipe_, options_, paths_in(scene_));
+  const Plan plan = plan_picture(recipe_, options_, paths_in(scene_), gbuffer_.shines());
   wanted_ = plan.wanted;
+  gbuffer_.set_mirror_apart(plan.mirror_apart ? std::optional(options_.of<MirrorApart>().least) : std::nullopt);
   std::vector<Step> before = std::exchange(steps_, {});
   // First those that go, so that there are never two of what is large.
   std::erase_if(before, [&](const Step& step) {
@@ -98,6 +99,7 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
                   .shadow_maps = shadow_maps_,
                   .wanted = wanted_,
                   .scene_diagonal_m = glm::distance(scene_.bounds_min, scene_.bounds_max),
+                  .sky = sky_seen_ ? &*sky_seen_ : nullptr,
                   .sample = sample_};
   layers_.clear();  // of later stages before those of earlier ones: small light first
   bool lights_ready = false;

@@ -10,6 +10,7 @@
 #include "core/scene.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/reflective_shadow_map.h"
+#include "screen/base/sky_seen.h"
 #include "screen/frame/light_path.h"
 
 namespace volgi::screen {
@@ -58,6 +59,7 @@ struct FrameData {
   const ReflectiveShadowMap& shadow_maps;
   LightPaths wanted;  // what the picture shows, and the recipe claims
   float scene_diagonal_m;
+  const SkySeen* sky = nullptr;  // what is seen where there is no surface; null: nothing
   int sample = 0;  // of the pictures that are averaged: what stages choose by chance (core/sample_sequence.h)
   std::vector<RadianceLayer> layers = {};
   Products products = {};

@@ -58,8 +58,11 @@ inline constexpr LightPaths SKY_PATHS{LightPath::sky_seen, LightPath::sky_direct
                                       LightPath::sky_higher};
 inline constexpr LightPaths PUNCTUAL_PATHS = LightPaths::all() - EMISSION_PATHS - SKY_PATHS;
 
-/// What a layer or a stage has of its paths. `near` and `far` are the two parts of a whole.
-enum class LightShare { whole, near, far };
+/// What a layer or a stage has of its paths. `near` and `far` are the two parts of a whole; `mirror` is what the
+/// visible surface's mirror of facets reflects of it, where a stage has that apart and the whole is the rest
+/// (GBuffer::set_mirror_apart).
+enum class LightShare { whole, near, far, mirror };
+inline constexpr int LIGHT_SHARE_COUNT = 4;
 
 /// In words, for messages: "light straight from emissive surfaces".
 const char* in_words(LightPath path);

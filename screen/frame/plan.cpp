@@ -24,13 +24,15 @@ bool has(const std::vector<Product>& products, const Product& p) {
 }
 
 /// @param lacks  of all of them, active or not.
-std::vector<Candidate> active_stages(const Recipe& recipe, const FrameOptions& options, LightPaths& lacks) {
+std::vector<Candidate> active_stages(const Recipe& recipe, const FrameOptions& options, bool shines,
+                                     LightPaths& lacks) {
   std::vector<Candidate> stages;
   for (const StageType* type : recipe.stages) {
     if (!stages.empty() && type->slot < stages.back().type->slot)
       refuse(recipe, fmt::format("stage {} stands behind one of a later slot", type->name));
     StageRole role = type->role(options);
     lacks = lacks | role.lacks;
+    if (!shines) std::erase_if(role.adds, [](const StageRole::Light& l) { return l.share == LightShare::mirror; });
     if (role.active) stages.push_back({type, std::move(role)});
   }
   return stages;
@@ -49,7 +51,7 @@ void check_needs(const Recipe& recipe, const std::vector<Candidate>& stages) {
 
 /// Who carries a path, and how much of it.
 struct Carriers {
-  std::vector<const char*> whole, near, far;
+  std::vector<const char*> whole, near, far, mirror;
 };
 
 Carriers carriers_of(LightPath path, const std::vector<Candidate>& stages) {
@@ -58,10 +60,8 @@ Carriers carriers_of(LightPath path, const std::vector<Candidate>& stages) {
   for (const Candidate& stage : stages) {
     for (const StageRole::Light& light : stage.role.adds) {
       if (!light.paths.contains(path)) continue;
-      (light.share == LightShare::whole  ? c.whole
-       : light.share == LightShare::near ? c.near
-                                         : c.far)
-          .push_back(stage.type->name);
+      std::vector<const char*>* const by_share[LIGHT_SHARE_COUNT] = {&c.whole, &c.near, &c.far, &c.mirror};
+      by_share[int(light.share)]->push_back(stage.type->name);
     }
   }
   return c;
@@ -73,11 +73,13 @@ void check_paths(const Recipe& recipe, const std::vector<Candidate>& stages, Lig
     const LightPath path{std::uint8_t(k)};
     const Carriers c = carriers_of(path, stages);
     const size_t near = c.near.size(), far = c.far.size(), whole = c.whole.size();
-    if (whole > 1 || near > 1 || far > 1 || (whole == 1 && near + far > 0))
+    if (whole > 1 || near > 1 || far > 1 || c.mirror.size() > 1 || (whole == 1 && near + far > 0))
       refuse(recipe, fmt::format("{}: counted twice", in_words(path)));
     if (near != far)
       refuse(recipe, fmt::format("{}: only the {} part is there", in_words(path), near > far ? "near" : "far"));
     const bool carried = whole + near > 0;
+    if (!carried && !c.mirror.empty())
+      refuse(recipe, fmt::format("{}: only the mirror's part is there, of stage {}", in_words(path), c.mirror[0]));
     if (carried && !(recipe.claims | BASE_PATHS).contains(path))
       refuse(recipe, fmt::format("{}: stage {} adds it, which the recipe does not claim", in_words(path),
                                  whole > 0 ? c.whole[0] : c.near[0]));
@@ -100,6 +102,8 @@ void keep_needed(std::vector<Candidate> stages, Plan& plan) {
     const bool is_taken =
         std::any_of(role.makes.begin(), role.makes.end(), [&](const Product& p) { return has(taken, p); });
     if (!is_taken && !paths_of(role.adds).meets(plan.wanted)) continue;
+    for (const StageRole::Light& light : role.adds)
+      plan.mirror_apart = plan.mirror_apart || (light.share == LightShare::mirror && light.paths.meets(plan.wanted));
     plan.steps.insert(plan.steps.begin(), {stage->type, taken, role.adds});
     taken.insert(taken.end(), role.needs.begin(), role.needs.end());
     taken.insert(taken.end(), role.uses.begin(), role.uses.end());
@@ -125,10 +129,10 @@ LightPaths paths_in(const Scene& scene) {
   return paths;
 }
 
-Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths present) {
+Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths present, bool shines) {
   const LightPaths asked = asked_paths(options.light, options.bounces) & present;
   LightPaths lacks;
-  const std::vector<Candidate> stages = active_stages(recipe, options, lacks);
+  const std::vector<Candidate> stages = active_stages(recipe, options, shines, lacks);
   Plan plan;
   plan.wanted = (asked & (recipe.claims | BASE_PATHS)) - lacks;
   plan.missing = asked - plan.wanted;
@@ -139,7 +143,7 @@ Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths 
 }
 
 void check_layers(const Plan::Step& step, std::span<const RadianceLayer> layers) {
-  LightPaths seen[3];
+  LightPaths seen[LIGHT_SHARE_COUNT];
   for (const RadianceLayer& layer : layers) {
     LightPaths of_share;
     for (const StageRole::Light& light : step.adds) {

@@ -7,7 +7,9 @@
 
 #include "core/error.h"
 #include "screen/base/base_parameters.h"
+#include "screen/bounces/glossy/glossy_stage.h"
 #include "screen/bounces/volume/volume_stage.h"
+#include "screen/gather/area/area_stage.h"
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/interleaved/interleaved_stage.h"
 #include "screen/gather/multires/multires_stage.h"
@@ -19,9 +21,11 @@
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/rsm_stage.h"
 #include "screen/sources/sky/sky_stage.h"
+#include "screen/sources/textured_area/textured_area_stage.h"
 #include "screen/visibility/area_maps/area_maps_stage.h"
 #include "screen/visibility/imperfect/imperfect_stage.h"
 #include "screen/visibility/negative/negative_stage.h"
+#include "screen/visibility/screen_voxels/screen_voxels_stage.h"
 #include "screen/visibility/visibility_choice.h"
 
 namespace volgi::screen {
@@ -31,6 +35,7 @@ namespace {
 // One line a technique.
 constexpr const StageType* STAGE_TYPES[] = {
     &SKY,
+    &TEXTURED_AREA,
     &RSM_LIGHTS,
     &RESAMPLED_LIGHTS,
     &LATTICE_LIGHTS,
@@ -38,12 +43,15 @@ constexpr const StageType* STAGE_TYPES[] = {
     &NEGATIVE_LIGHTS_STAGE,
     &AREA_MAPS,
     &IMPERFECT_VISIBILITY,
+    &SCREEN_VOXELS,
+    &AREA_GATHER,
     &STRIDED_GATHER,
     &INTERLEAVED_GATHER,
     &MULTIRES_GATHER,
     &SUBSPLAT_GATHER,
     &VOLUME,
     &VOLUME_AFTER_FIRST_BOUNCE,
+    &GLOSSY,
 };
 
 using enum LightPath;
@@ -63,8 +71,8 @@ std::vector<Recipe> make_recipes() {
   return {
       {"hybrid",
        "the first bounce on the screen by clustered virtual lights, the others through the volume",
-       {&SKY, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER,
-        &VOLUME_AFTER_FIRST_BOUNCE},
+       {&SKY, &TEXTURED_AREA, &RSM_LIGHTS, &RESAMPLED_LIGHTS, &AREA_MAPS, &INTERLEAVED_GATHER, &MULTIRES_GATHER,
+        &VOLUME_AFTER_FIRST_BOUNCE, &GLOSSY},
        LightPaths::all()},
       {"volume", "all light but direct light through the volume", {&VOLUME}, LightPaths::all()},
       {"lpv", "volume --scheme lpv2009", {&VOLUME}, LightPaths::all(), &prefer_lpv},
@@ -103,6 +111,10 @@ std::vector<Recipe> make_recipes() {
        {&LIGHT_PATCHES, &NEGATIVE_LIGHTS_STAGE, &AREA_MAPS, &SUBSPLAT_GATHER},
        {punctual_first},
        &prefer_light_hierarchy},
+      {"area",
+       "light straight from emissive surfaces, textures kept, by lights on them seen through voxels (Nichols 2010)",
+       {&TEXTURED_AREA, &SCREEN_VOXELS, &AREA_GATHER},
+       {emission_direct}},
       {"none", "direct light of punctual lights and the sky alone", {&SKY}, {sky_direct}},
   };
 }

@@ -13,6 +13,12 @@ struct VisibilityChoice {
     regular,    // from triangles
   };
   std::optional<Maps> maps;  // none: as the recipe has it
+  /// What hides lights on emissive surfaces from pixels.
+  enum class Ways {
+    none,
+    voxels,  // of the camera's frustum (Nichols 2010)
+    faces,   // that the volume blocks
+  } ways = Ways::voxels;
 };
 
 /// As the wave lattice's text has it first.

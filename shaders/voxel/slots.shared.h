@@ -7,6 +7,8 @@
 #define CELL_SIDES_SLOT 3
 #define SIDES_SLOT 4
 #define SIDE_COUNT_SLOT 5
+// FaceWalkCells::bind().
+#define WALK_CELLS_UNIT 11
 
 // Drawing the scene: places of the buffers in lists in which each has one of every family that is bound at once.
 #define KEY_LOW_PLACE 0

@@ -33,6 +33,27 @@ must "$volgi" render "$scene" "${small[@]}" --gi none --quiet -o 'still_%02d.png
 cmp still_00.png still_01.png || fail "a scene without animation moved"
 rm still_*.png
 
+# A film on an emissive texture: frames are the stills of their times, here and in the reference; it begins again.
+must "$volgi" render "$scene" --size 8x4 --gi none --exposure 3 -o film.0000.png --quiet
+must "$volgi" render "$scene" --size 6x6 --gi none --exposure -1 -o film.0001.png --quiet
+lit="$(dirname "$scene")/emissive.glb"
+film=("$lit" "${small[@]}" --gi hybrid --backend cpu --area-video 'film.%04d.png' --area-fps 2 --quiet)
+must "$volgi" render "${film[@]}" -o out.exr --animate 0:1:2
+for k in 0 1; do
+  must "$volgi" render "${film[@]}" -o alone.exr --time "0.$((5 * k))"
+  cmp alone.exr "out.000$k.exr" || fail "frame $k of a film is not the picture of its time"
+done
+cmp -s out.0000.exr out.0001.exr && fail "the film stands still"
+cmp out.0000.exr out.0002.exr || fail "the film does not begin again"
+for k in 0 1; do
+  must "$volgi" reference "$lit" -o "reference$k.exr" --size 16x16 --spp 2 --time "0.$((5 * k))" --area-video 'film.%04d.png' --area-fps 2 --quiet
+done
+cmp -s reference0.exr reference1.exr && fail "the reference's film stands still"
+rm -- *.exr
+refuse 2 "no emissive surface" render "$scene" -o out.png --area-video film.0000.png
+refuse 2 "there is no such PNG" render "$lit" -o out.png --area-video nothing.%04d.png
+rm film.*
+
 # The third frame's name is taken by a folder.
 mkdir -p taken.0002.png/inside
 "$volgi" render builtin:metaballs "${small[@]}" --gi none --exposure 0 -o taken.png --animate 0:1:4 --quiet 2> "$logs/err"

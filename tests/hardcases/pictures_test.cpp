@@ -37,19 +37,32 @@ class Pictures : public GlTest {
     options.of<VolumeOptions>().scheme.scheme = scheme;
     const Image test = render_file(kData / (name + ".glb"), options).image;
     const fs::path folder = kData / "reference/ref" / name;
-    const Image direct = read_exr_rgb(folder / "direct.exr");
     const Image noise = difference(read_exr_rgb(folder / "full_noise.exr"), read_exr_rgb(folder / "direct_noise.exr"));
+    return error(name, difference(read_exr_rgb(folder / "full.exr"), read_exr_rgb(folder / "direct.exr")), noise, test);
+  }
+
+  /// Of `part`, "full" or "direct", by the default technique.
+  static Metrics::Relative hybrid_error(const std::string& name, const std::string& part) {
+    screen::FrameOptions options = picture_options("hybrid", {192, 192});
+    options.of<VolumeOptions>().grid_cells = 48;
+    if (part == "direct") options.light = screen::LightPart::direct;
+    const Image test = render_file(kData / "reference/scenes" / (name + ".glb"), options).image;
+    const fs::path folder = kData / "reference/ref" / name;
+    return error(name, read_exr_rgb(folder / (part + ".exr")), read_exr_rgb(folder / (part + "_noise.exr")), test);
+  }
+
+ private:
+  static Metrics::Relative error(const std::string& name, const Image& reference, const Image& noise,
+                                 const Image& test) {
+    const fs::path folder = kData / "reference/ref" / name;
     const ChannelImage aov = read_exr(folder / "aov.exr");
-    RegionLayers layers{layer(aov, "Position"), layer(aov, "Normal"), direct, values(aov, "IndexOB.X"),
-                        values(aov, "Depth.Z")};
-    const Metrics m = measure(difference(read_exr_rgb(folder / "full.exr"), direct), test, &noise,
-                              region_mask(Region::noedge, layers));
+    RegionLayers layers{layer(aov, "Position"), layer(aov, "Normal"), read_exr_rgb(folder / "direct.exr"),
+                        values(aov, "IndexOB.X"), values(aov, "Depth.Z")};
+    const Metrics m = measure(reference, test, &noise, region_mask(Region::noedge, layers));
     EXPECT_EQ(m.nonfinite, 0);
     EXPECT_EQ(m.negative, 0);
     return m.relative.value();
   }
-
- private:
   static std::vector<float> values(const ChannelImage& image, const std::string& suffix) {
     for (const Channel& c : image.channels) {
       if (c.name.size() >= suffix.size() && c.name.ends_with(suffix)) return c.values;
@@ -70,6 +83,20 @@ TEST_F(Pictures, CornellIndirect) {
   const auto error = indirect_error("cornell", Scheme::ordinates);
   EXPECT_NEAR(error.ratio, 1.0, 0.1);
   EXPECT_LT(error.rmse_pct_denoised.value(), 15.0);  // the issue asks for 40; 9 is reached, 15 guards it
+}
+
+// Coloured soft shadows of a textured emitter.
+TEST_F(Pictures, AreaTvStraightFromTheScreen) {
+  const auto error = hybrid_error("area_tv", "direct");
+  EXPECT_NEAR(error.ratio, 1.0, 0.02);              // asked for: 0.05
+  EXPECT_LT(error.rmse_pct_denoised.value(), 2.0);  // asked for: 10; 0.7 is reached
+}
+
+// White metal reflects the room: 17.4 % as if light were even.
+TEST_F(Pictures, MetalBoxFullLight) {
+  const auto error = hybrid_error("metal_box", "full");
+  EXPECT_NEAR(error.ratio, 1.0, 0.03);               // asked for: 0.08
+  EXPECT_LT(error.rmse_pct_denoised.value(), 11.0);  // asked for: 15; 9.1 is reached
 }
 
 TEST_F(Pictures, RoomIndirect) {

@@ -49,6 +49,14 @@ class FrameVolume {
   virtual const VoxelGridGl& voxels() const = 0;
   virtual const gl::Buffer* direct_irradiance() const { return nullptr; }
   virtual const gl::Buffer* indirect_irradiance() const { return nullptr; }
+  /// Of the last run: flux A B0 per side, vec4 [W], that sides reflect of the light that comes in, before any
+  /// transport, and what they emit in order of its own; null: there is none. On the CPU it is uploaded when it is asked
+  /// for.
+  struct SentFlux {
+    const gl::Buffer* punctual = nullptr;
+    const gl::Buffer* emitted = nullptr;
+  };
+  virtual SentFlux light_in() const { return {}; }
   /// Radiance in free space of what sides sent in the last run, in all orders; on the CPU, with what streams in from a
   /// sky. Light that the screen carries, as the first bounce of `hybrid`, is not in it. Null while an order may be
   /// under way that the next run goes on with. Made when it is first asked for after a run, and kept until the next,

@@ -142,8 +142,8 @@ class SidesOnCpu : public FrameVolume {
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       upload(volume_.voxels(), voxels_);
-      upload_irradiance(volume_.irradiance().direct, direct_);
-      upload_irradiance(volume_.irradiance().indirect, indirect_);
+      upload_values(volume_.irradiance().direct, direct_);
+      upload_values(volume_.irradiance().indirect, indirect_);
     }
     const bool apart = first_bounce == nullptr || first_is_apart();
     gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, false, apart},
@@ -161,6 +161,12 @@ class SidesOnCpu : public FrameVolume {
   const VoxelGridGl& voxels() const override { return voxels_; }
   const gl::Buffer* direct_irradiance() const override { return &direct_; }
   const gl::Buffer* indirect_irradiance() const override { return &indirect_; }
+  SentFlux light_in() const override {
+    const SideFlux& flux = volume_.flux();
+    upload_values(flux.punctual, punctual_flux_);
+    upload_values(flux.emitted, emitted_flux_);
+    return {flux.punctual.empty() ? nullptr : &punctual_flux_, flux.emitted.empty() ? nullptr : &emitted_flux_};
+  }
   const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
     if (options_.passes_per_run) return nullptr;
     if (radiance_is_new_) return &radiance_;
@@ -175,7 +181,7 @@ class SidesOnCpu : public FrameVolume {
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);
     r.memory_bytes = volume_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() +
-                     radiance_.bytes() + gather_.bytes();
+                     punctual_flux_.bytes() + emitted_flux_.bytes() + radiance_.bytes() + gather_.bytes();
     return r;
   }
 
@@ -201,7 +207,7 @@ class SidesOnCpu : public FrameVolume {
               flux);
     return flux;
   }
-  static void upload_irradiance(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
+  static void upload_values(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
     const size_t bytes = values.size() * sizeof(glm::vec4);
     if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(with_headroom(bytes));
     if (bytes > 0) buffer.upload(values.data(), bytes);
@@ -218,6 +224,7 @@ class SidesOnCpu : public FrameVolume {
   gl::Buffer direct_, indirect_;
   VolumeGather gather_;
   // Of the last run, when it is asked for.
+  mutable gl::Buffer punctual_flux_, emitted_flux_;
   mutable RadianceVolumeGl radiance_;
   mutable bool radiance_is_new_ = false;
 };

@@ -143,6 +143,7 @@ class SidesOnGpu : public FrameVolume {
   const VoxelGridGl& voxels() const override { return lit_.voxels(); }
   const gl::Buffer* direct_irradiance() const override { return &irradiance_.direct(); }
   const gl::Buffer* indirect_irradiance() const override { return &irradiance_.indirect(); }
+  SentFlux light_in() const override { return {&lit_.flux().punctual(), &lit_.flux().emitted()}; }
   const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
     if (options_.passes_per_run) return nullptr;
     if (radiance_is_new_) return &radiance_;

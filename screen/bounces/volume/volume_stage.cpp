@@ -97,7 +97,8 @@ StageRole role_after_first_bounce(const FrameOptions& options) {
                 "orders: --scheme ordinates or conservative");
   bounce_rules(o, 0.5f);
   LightPaths paths{punctual_higher, emission_first, emission_higher, sky_higher};
-  StageRole r{.needs = {product<VirtualLightListGl>()}, .uses = {product<SmoothGather>()}};
+  StageRole r{
+      .needs = {product<VirtualLightListGl>()}, .uses = {product<SmoothGather>()}, .makes = {product<FrameVolume>()}};
   if (!sky_goes_by_lights(options)) {
     r.uses.push_back(product<SkyMaps>());
     paths = paths | LightPaths{sky_first};

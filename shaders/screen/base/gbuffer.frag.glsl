@@ -25,14 +25,21 @@ layout(location = 5) out vec4 out_diffuse;  // and perceptual roughness
 layout(location = 6) out vec4 out_mirror;   // reflectance from in front, and at grazing angles
 layout(binding = DIRECTIONAL_ALBEDO_UNIT) uniform sampler2D directional_albedo;
 
+uniform float least_mirror_apart;
+
 // Of even light, all that goes to the viewer: by directional_albedo.h, and what of Schlick's (1 - v.h)^5 a diffuse
-// surface sees in the mean (a polynomial of the cosine, within 4e-6).
-vec3 albedo_to_viewer(Reflectance r, float roughness, float cosine) {
+// surface sees in the mean (a polynomial of the cosine, within 4e-6). Alpha: the share of the mirror that is in it.
+vec4 albedo_to_viewer(Reflectance r, float roughness, float cosine) {
   float c = clamp(cosine, 0.0, 1.0);
   float grazing = (((0.00907138 * c - 0.04386464) * c + 0.08659765) * c - 0.07987975) * c + 0.02815884;
   float front = max(max(r.at_0.r, r.at_0.g), r.at_0.b);
   vec2 mirror = textureLod(directional_albedo, vec2(c, clamp(roughness, 0.0, 1.0)), 0.0).rg;
-  return r.diffuse * (1.0 - (front + (r.at_90 - front) * grazing)) + r.at_0 * mirror.x + vec3(r.at_90 * mirror.y);
+  vec3 facets = r.at_0 * mirror.x + vec3(r.at_90 * mirror.y);
+  // From none to all of it within as much again, so that no edge shows.
+  float apart = max(max(facets.r, facets.g), facets.b) / max(least_mirror_apart, 1e-4) - 1.0;
+  float kept = 1.0 - clamp(apart, 0.0, 1.0);
+  vec3 diffuse = r.diffuse * (1.0 - (front + (r.at_90 - front) * grazing));
+  return vec4(diffuse + kept * facets, kept);
 }
 #endif
 
@@ -74,7 +81,7 @@ void main() {
   float roughness = material_reflectance(base.rgb, uv0, uv1, reflectance);
 #ifdef SHINES
   vec3 to_viewer = normalize(viewer.xyz - position * viewer.w);
-  out_albedo = vec4(albedo_to_viewer(reflectance, roughness, dot(shading, to_viewer)), 1.0);
+  out_albedo = albedo_to_viewer(reflectance, roughness, dot(shading, to_viewer));
   out_diffuse = vec4(reflectance.diffuse, clamp(roughness, 0.0, 1.0));
   out_mirror = vec4(reflectance.at_0, reflectance.at_90);
 #else

@@ -1,7 +1,7 @@
 #version 450 core
 // Radiance of the sky where there is no surface. CPU twin: Sky::radiance in core/sky.cpp.
 #include "screen/base/gbuffer.glsl"
-#include "shared/constants.glsl"
+#include "screen/base/sky_picture.glsl"
 
 layout(binding = GBUFFER_UNITS) uniform sampler2D sky;  // latitude-longitude, row 0 is +Y
 uniform vec3 forward;                                   // and to the right and upper edges of the picture
@@ -16,6 +16,5 @@ void main() {
   if (texelFetch(position_map, pixel, 0).w != 0.0) discard;
   vec2 at = gl_FragCoord.xy / vec2(textureSize(position_map, 0)) * 2.0 - 1.0;
   vec3 d = normalize(forward + at.x * right + at.y * up);
-  vec2 uv = vec2(0.5 + (atan(d.x, -d.z) - rotation_rad) / (2.0 * PI), acos(clamp(d.y, -1.0, 1.0)) / PI);
-  radiance = vec4(textureLod(sky, uv, 0.0).rgb, 1.0);
+  radiance = vec4(textureLod(sky, sky_uv(d, rotation_rad), 0.0).rgb, 1.0);
 }

@@ -23,6 +23,7 @@ StageType type_of(const char* name, Slot slot) {
 StageRole first(const FrameOptions&) { return {.adds = {{{punctual_first}}}}; }
 StageRole near_first(const FrameOptions&) { return {.adds = {{{punctual_first}, LightShare::near}}}; }
 StageRole far_first(const FrameOptions&) { return {.adds = {{{punctual_first}, LightShare::far}}}; }
+StageRole mirrored_first(const FrameOptions&) { return {.adds = {{{punctual_first}, LightShare::mirror}}}; }
 StageRole higher(const FrameOptions&) { return {.adds = {{{punctual_higher}}}}; }
 StageRole direct(const FrameOptions&) { return {.adds = {{{punctual_direct}}}}; }
 StageRole grows(const FrameOptions&) { return {.makes = {product<Apples>()}}; }
@@ -32,6 +33,7 @@ const StageType FIRST = type_of<first>("first", Slot::gather);
 const StageType AGAIN = type_of<first>("again", Slot::gather);
 const StageType NEAR = type_of<near_first>("near", Slot::gather);
 const StageType FAR = type_of<far_first>("far", Slot::gather);
+const StageType MIRROR = type_of<mirrored_first>("mirror", Slot::bounces);
 const StageType HIGHER = type_of<higher>("higher", Slot::bounces);
 const StageType DIRECT = type_of<direct>("direct", Slot::gather);
 const StageType TREE = type_of<grows>("tree", Slot::lights);
@@ -55,6 +57,18 @@ TEST(Plan, RefusesALightPathThatIsCountedTwice) {
   EXPECT_SAYS(refusal({&NEAR, &NEAR, &FAR}, {punctual_first}), "counted twice");
   // Every picture has this one.
   EXPECT_SAYS(refusal({&DIRECT}, {}), "direct light of punctual lights: counted twice");
+}
+
+TEST(Plan, AMirrorsShareIsBesideAllTheRest) {
+  EXPECT_EQ(refusal({&FIRST, &MIRROR}, {punctual_first}), "");
+  EXPECT_EQ(refusal({&NEAR, &FAR, &MIRROR}, {punctual_first}), "");
+  EXPECT_SAYS(refusal({&FIRST, &MIRROR, &MIRROR}, {punctual_first}), "counted twice");
+  EXPECT_SAYS(refusal({&MIRROR}, {}), "only the mirror's part is there");
+  const Recipe recipe{"made_up", "", {&FIRST, &MIRROR}, {punctual_first}};
+  EXPECT_TRUE(plan_picture(recipe, {}, PUNCTUAL_PATHS, true).mirror_apart);
+  const Plan lambertian = plan_picture(recipe, {}, PUNCTUAL_PATHS, false);
+  EXPECT_FALSE(lambertian.mirror_apart);
+  EXPECT_EQ(lambertian.steps.size(), 1u);
 }
 
 TEST(Plan, RefusesALightPathThatNobodyCarries) {

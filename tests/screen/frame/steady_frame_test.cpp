@@ -57,9 +57,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Setting{"none", Gi("none")}, Setting{"volume", Gi("volume")},
         Setting{"volume_on_cpu", Gi("volume"), screen::Backend::cpu}, Setting{"vpl", Gi("vpl")},
-        Setting{"negative", Gi("negative")}, Setting{"val", Gi("val")}, Setting{"hybrid", Gi("hybrid")},
-        Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu}, Setting{"multires", Gi("multires")},
-        Setting{"radiosity", Gi("radiosity")}, Setting{"hierarchical", Gi("hierarchical")},
+        Setting{"negative", Gi("negative")}, Setting{"val", Gi("val")}, Setting{"area", Gi("area")},
+        Setting{"hybrid", Gi("hybrid")}, Setting{"hybrid_on_cpu", Gi("hybrid"), screen::Backend::cpu},
+        Setting{"multires", Gi("multires")}, Setting{"radiosity", Gi("radiosity")},
+        Setting{"hierarchical", Gi("hierarchical")},
         Setting{"splat", Gi("multires"), screen::Backend::gpu, {"multires.sum=splat"}},
         Setting{"splat_by_compute",
                 Gi("multires"),
