@@ -10,7 +10,7 @@ layout(binding = SKY_NORMAL_UNIT) uniform sampler2DArray sky_normal;  // geometr
 uniform int sky_resolution;
 uniform int part_count;
 
-// Whether the surface in a texel hides a point from the part, as rsm_texel_hides() of shared/reflective_shadow_map.glsl
+// Whether the surface in a texel hides a point from the part, as rsm_occluder() of shared/reflective_shadow_map.glsl
 // tells it. @param uvz  the point in the map.
 bool sky_texel_hides(int part, ivec2 texel, vec3 uvz, vec3 position, vec3 geometric) {
   float depth = texelFetch(sky_depth, ivec3(texel, part), 0).r;
