@@ -27,6 +27,7 @@ bool cell_in_front(vec3 point, vec3 normal, out ivec3 cell) {
 
 // From cell to cell, along the axis with the longest way left that is open.
 bool open_way(ivec3 from, ivec3 to) {
+  if (!cell_inside(grid, from)) return false;
   for (int step = 0; step < OPEN_WAY_STEPS && from != to; ++step) {
     ivec3 left = to - from;
     uvec2 faces = cell_sides[cell_index(grid, from)];

@@ -147,7 +147,7 @@ class SidesOnCpu : public FrameVolume {
       upload_irradiance(volume_.irradiance().indirect, indirect_);
     }
     const bool apart = first_bounce == nullptr || first_is_apart();
-    gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, false, apart},
+    gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, apart},
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool first_is_apart() const override { return options_.bounces.has_value(); }

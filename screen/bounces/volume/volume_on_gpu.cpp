@@ -128,8 +128,7 @@ class SidesOnGpu : public FrameVolume {
     bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits() || sky_apart, rules_, timer,
                                   streaming_sky(scene_, options_));
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
-    gather_.run(gbuffer, camera,
-                {lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), sky_apart, first_is_apart_},
+    gather_.run(gbuffer, camera, {lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), first_is_apart_},
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool follow_scene() override {
