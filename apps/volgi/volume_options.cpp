@@ -102,7 +102,11 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
           "lamps reach, where that is less than half of the scene, or the scene)")
       ->expected(6)
       ->delimiter(',');
-  command.add_option("--scheme", scheme, "how the volume propagates light")
+  command
+      .add_option(
+          "--scheme", scheme,
+          "how the volume propagates light; conservative is a baseline: in the middle of walls 2.5 to 5 % too bright, "
+          "around things that float up to 15")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))
       ->capture_default_str();
   command.add_option("--sh-order", sh_order, "order of the spherical harmonics of all schemes but 'ordinates'")
