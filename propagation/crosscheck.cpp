@@ -330,7 +330,7 @@ class Stages {
 
 std::vector<CrosscheckRow> crosscheck(const Scene& scene, const VolumeOptions& options,
                                       const std::vector<int>& passes) {
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
   std::vector<CrosscheckRow> rows;
   GpuVoxels gpu(scene, grid);
   compare_voxels(gpu.voxels, voxelize_cpu(scene, grid), rows);

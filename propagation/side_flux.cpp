@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "propagation/side_loops.h"
+#include "voxel/seeing_cells.h"
 #include "voxel/side_search.h"
 
 namespace volgi {
@@ -17,12 +18,15 @@ struct Target {
 
 /// The side of the 5^3 cells around a point that is nearest and faces most alike: by the cosine between the normals
 /// less the distance in cells; those that face the surface's way, of cells that reach in front of it, before all others
-/// (what is smaller than a cell may have no other). -1: there is none, or the surface is the grid's rim and looks out:
+/// (what is smaller than a cell may have no other), and before those the sides of cells to which
+/// the point's light comes. -1: there is none, or the surface is the grid's rim and looks out:
 /// what a roof there reflects leaves the scene and is not for the room below.
 int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal) {
   const glm::vec3 point = shared::cell_from_world(voxels.grid(), world_position);
   const float reach = DEPOSIT_REACH * shared::staircase_factor(normal);
   if (!shared::cell_inside(voxels.grid(), glm::ivec3(glm::floor(point + reach * normal)))) return -1;
+  const glm::ivec3 seeing = seeing_cell(voxels, point, normal);
+  if (!shared::cell_inside(voxels.grid(), seeing)) return -1;
   const glm::ivec3 centre(glm::floor(point));
   const glm::ivec3 first = glm::max(centre - 2, 0);
   const glm::ivec3 last = glm::min(centre + 2, voxels.grid().cells - 1);
@@ -36,9 +40,12 @@ int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 n
         const bool in_front = glm::dot(to_centre, normal) > -reach;
         const glm::uvec2 own = voxels.cell_sides(c);
         const int count = int(shared::count_bits(own.y & 63u));
+        if (count == 0) continue;
+        const bool seen = !hidden_from_cell(voxels, c, point, normal) && open_way(voxels, seeing, c);
         for (int side = int(own.x); side < int(own.x) + count; ++side) {
           const float cosine = glm::dot(voxels.sides()[size_t(side)].normal, normal);
-          const float score = cosine - glm::length(to_centre) + (in_front && cosine > 0.0f ? DEPOSIT_FIRST : 0.0f);
+          const float score = cosine - glm::length(to_centre) + (in_front && cosine > 0.0f ? DEPOSIT_FIRST : 0.0f) +
+                              (seen ? DEPOSIT_SEEN : 0.0f);
           if (best >= 0 && score <= best_score) continue;
           best = side;
           best_score = score;

@@ -75,7 +75,7 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
     : scene_(scene),
       options_(options),
-      grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells)),
+      grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
       rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
   if (options.scheme.scheme == Scheme::ordinates)

@@ -7,6 +7,7 @@
 #include "core/scene.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/scheme.h"
+#include "voxel/grid.h"
 #include "voxel/voxelization_options.h"
 
 namespace volgi {
@@ -15,6 +16,7 @@ namespace volgi {
 struct VolumeOptions {
   int grid_cells = 32;               // along the longest axis, 1 ... 256
   glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
+  std::optional<GridBox> grid_box;   // what the grid lies around; none: the scene
   SchemeOptions scheme;
   VoxelizationOptions voxelization;  // on the GPU
   std::optional<int> bounces;        // BounceRules

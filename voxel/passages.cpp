@@ -115,9 +115,10 @@ bool stay_joined(const Scene& scene, const Grid& fine, const std::vector<int>& p
 
 std::vector<int> places_of(const VoxelGrid& voxels) { return Places(voxels).take(); }
 
-int cells_that_keep_passages(const Scene& scene, int cells, size_t most_cells) {
-  if (sizes_of(places_of(voxelize_cpu(scene, make_grid(scene, std::max(cells / 2, 1))))).size() <= 1) return cells;
-  const Grid fine = make_grid(scene, 2 * cells);
+int cells_that_keep_passages(const Scene& scene, int cells, size_t most_cells, const std::optional<GridBox>& box) {
+  const auto grid_of = [&](int n) { return make_grid(scene, n, glm::vec3(0.0f), box); };
+  if (sizes_of(places_of(voxelize_cpu(scene, grid_of(std::max(cells / 2, 1))))).size() <= 1) return cells;
+  const Grid fine = grid_of(2 * cells);
   if (cell_count(fine) > LOOKED_AT_MORE * most_cells) return cells;
   const std::vector<int> places = places_of(voxelize_cpu(scene, fine));
   int needed = 8 * cells / 3;
@@ -126,7 +127,7 @@ int cells_that_keep_passages(const Scene& scene, int cells, size_t most_cells) {
     needed = 4 * cells / factor;
     break;
   }
-  while (needed > cells && cell_count(make_grid(scene, needed)) > most_cells) --needed;
+  while (needed > cells && cell_count(grid_of(needed)) > most_cells) --needed;
   return needed;
 }
 

@@ -8,6 +8,7 @@
 #include <bit>
 
 #include <cmath>
+#include "voxel/seeing_cells.h"
 #include "voxel/side_search_around.h"
 #include "voxel/side_search_internal.h"
 
@@ -143,14 +144,29 @@ inline std::uint32_t SideSearch::cells_with_side(const Column& column, int way) 
   return bits;
 }
 
-/// Index of the side of a column's cell, which must have it.
 template <int axis>
-inline std::uint32_t SideSearch::side_of(const Column& column, int cell, int way) const {
+inline glm::ivec3 SideSearch::cell_at(const Column& column, int cell) {
   glm::ivec3 at;
   at[(axis + 1) % 3] = column.b;
   at[(axis + 2) % 3] = column.c;
   at[axis] = cell;
-  const glm::uvec2 own = voxels_.cell_sides(at);
+  return at;
+}
+
+template <int axis>
+inline SideSearch::Place SideSearch::place_of(const glm::vec3& point, const glm::ivec3& own) const {
+  return {point[axis], fronts_[0] < 0 ? std::floor(point[axis]) : float(own[axis]), point, own};
+}
+
+/// Whether a cell and the one that sees the point are on one side of what is around.
+inline bool SideSearch::is_open_to(const Place& place, const glm::ivec3& cell, const glm::vec3& normal) const {
+  return !hidden_from_cell(voxels_, cell, place.point, normal) && open_way(voxels_, place.seeing, cell);
+}
+
+/// Index of the side of a column's cell, which must have it.
+template <int axis>
+inline std::uint32_t SideSearch::side_of(const Column& column, int cell, int way) const {
+  const glm::uvec2 own = voxels_.cell_sides(cell_at<axis>(column, cell));
   return own.x + kBitCount[own.y & ((1u << axes_[axis].faces[way]) - 1u)];
 }
 
@@ -170,6 +186,7 @@ inline bool SideSearch::look(const Column& column, std::uint32_t three, const Pl
     if ((three >> (step + 1) & 1u) == 0) continue;
     const std::uint32_t index = side_of<axis>(column, middle + step, way);
     const shared::Side& side = voxels_.sides()[index];
+    if (front < 0 && !is_open_to(place, cell_at<axis>(column, middle + step), normal)) continue;
     if (front >= 0 && (side.front != front || behind_side(side, normal, axis, column.depth))) continue;
     const float cosine = glm::dot(side.normal, normal);
     if (!(cosine >= 0.0f)) continue;
@@ -200,13 +217,15 @@ inline bool SideSearch::any_side_around(const Column& own, int way) const {
 
 /// The quick way to what most searches end with: the plane's own face has the side asked for.
 template <int axis>
-inline int SideSearch::side_at_once(const Column& column, int way) const {
+inline int SideSearch::side_at_once(const Column& column, const Place& place, int way) const {
   if ((cells_with_side<axis>(column, way) & 2u) == 0) return -1;
   const std::uint32_t index = side_of<axis>(column, column.face - axes_[axis].below[way], way);
   const shared::Side& side = voxels_.sides()[index];
   const bool good = (side.front == fronts_[way] || fronts_[way] < 0) &&
                     (fronts_[way] < 0 || (side.depth - column.depth) * side.normal[axis] <= kOneLayer) &&
-                    glm::dot(side.normal, normals_[way]) >= SIMILAR_NORMAL_COSINE;
+                    glm::dot(side.normal, normals_[way]) >= SIMILAR_NORMAL_COSINE &&
+                    (fronts_[way] >= 0 ||
+                     is_open_to(place, cell_at<axis>(column, column.face - axes_[axis].below[way]), normals_[way]));
   return good ? int(index) : -1;
 }
 
@@ -226,8 +245,9 @@ inline void SideSearch::find(const glm::vec3& point, const glm::ivec3& own, Foun
   const bool exists = own[b] >= 0 && own[b] < cells[b] && own[c] >= 0 && own[c] < cells[c];
   if (axes_[axis].slope <= kFarthest && exists) {  // all points of the cell are within half a slope
     const Column column = column_at<axis>(point, own[b], own[c]);
+    const Place place = place_of<axis>(point, own);
     for (int way = 0; way < ways_; ++way) {
-      found[way].alike = side_at_once<axis>(column, way);
+      found[way].alike = side_at_once<axis>(column, place, way);
       if (found[way].alike >= 0 || !any_side_around<axis>(column, way)) searching &= ~(1 << way);
     }
   }
@@ -245,7 +265,7 @@ void SideSearch::find_around(const glm::vec3& point, const glm::ivec3& own, int 
   constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
   constexpr int kOrder[9] = {4, 0, 1, 2, 3, 5, 6, 7, 8};
   const glm::ivec3& cells = voxels_.grid().cells;
-  const Place place{point[axis], float(own[axis])};
+  const Place place = place_of<axis>(point, own);
   for (int k : kOrder) {
     const int at_b = own[b] + k % 3 - 1, at_c = own[c] + k / 3 - 1;
     if (at_b < 0 || at_b >= cells[b] || at_c < 0 || at_c >= cells[c]) continue;
@@ -265,7 +285,7 @@ void SideSearch::find_around_quick(const glm::vec3& point, const glm::ivec3& own
   constexpr int b = (axis + 1) % 3, c = (axis + 2) % 3;
   static const ColumnsAround around = columns_around();
   const Axis& a = axes_[axis];
-  const Place place{point[axis], float(own[axis])};
+  const Place place = place_of<axis>(point, own);
   const int offset = a.columns[0].offset(own[b], own[c]);
   const AroundQuery query{point[axis],
                           point[b],
@@ -354,7 +374,8 @@ SideSearch::Answer SideSearch::at(const glm::vec3& point, const glm::ivec3& cell
 
 SidesOfPoint sides_of_point(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal, int front) {
   const glm::vec3 point = shared::cell_from_world(voxels.grid(), world_position);
-  return SideSearch(voxels, nullptr, normal, front, false).at(point, glm::ivec3(glm::floor(point))).along;
+  const glm::ivec3 cell = front < 0 ? seeing_cell(voxels, point, normal) : glm::ivec3(glm::floor(point));
+  return SideSearch(voxels, nullptr, normal, front, false).at(point, cell).along;
 }
 
 }  // namespace volgi

@@ -16,7 +16,8 @@ struct SidesOfPoint {
 };
 
 /// @param front  1 or 0: only sides that show a triangle's front or back, and that do not hide the point behind another
-///               surface; -1: any.
+///               surface; -1: any, of cells that see the point or are open to the one that does: a cell whose centre is
+///               inside of a closed box has nothing of the light on the ground beside it.
 SidesOfPoint sides_of_point(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal, int front);
 
 /// Which cells have a side on a face, and whether it shows a front, as bits that run along the face's axis: a column of
@@ -81,7 +82,7 @@ class SideSearch {
     SidesOfPoint along, against;  // the normal
     bool place_matters = false;   // another point of the plane in the same cell may get other ones
   };
-  /// @param point  in cell units, and the cell that it lies in.
+  /// @param point  in cell units, and the cell that it lies in; for front -1 the one that sees it.
   Answer at(const glm::vec3& point, const glm::ivec3& cell) const;
 
  private:
@@ -110,6 +111,8 @@ class SideSearch {
   /// Where the point is on the axis, and the cell that it lies in.
   struct Place {
     float at, low;
+    const glm::vec3& point;
+    const glm::ivec3& seeing;  // with front -1
   };
 
   void prepare(int axis, const SideColumns* columns);
@@ -128,9 +131,14 @@ class SideSearch {
   template <int axis>
   std::uint32_t cells_with_side(const Column& column, int way) const;
   template <int axis>
-  int side_at_once(const Column& column, int way) const;
+  int side_at_once(const Column& column, const Place& place, int way) const;
   template <int axis>
   bool any_side_around(const Column& own, int way) const;
+  template <int axis>
+  Place place_of(const glm::vec3& point, const glm::ivec3& own) const;
+  bool is_open_to(const Place& place, const glm::ivec3& cell, const glm::vec3& normal) const;
+  template <int axis>
+  static glm::ivec3 cell_at(const Column& column, int cell);
   template <int axis>
   std::uint32_t side_of(const Column& column, int cell, int way) const;
   SidesOfPoint weighted(const Found (&by_axis)[3][2], int way, bool& place_matters) const;

@@ -252,9 +252,11 @@ int RenderCommand::run() {
   const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
   Scene loaded = animate.empty() && !whole_animation ? source.at(scene.time_s) : source.at(times.at(0), box);
   video.show(loaded, animate.empty() ? scene.time_s : times.at(0));
-  frame.volume.fit_grid(loaded, options.of<VolumeOptions>());
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
+  const bool stands = animate.empty() && !whole_animation;
+  frame.volume.fit_grid(loaded, stands ? std::optional(glm::vec3(camera.world_from_camera[3])) : std::nullopt,
+                        options.of<VolumeOptions>());
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   std::optional<screen::Frame> picture(std::in_place, loaded, options);

@@ -4,12 +4,16 @@
 #include <tbb/global_control.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <memory>
 
 #include "core/error.h"
+#include "core/log.h"
+#include "core/visibility/reach.h"
 #include "propagation/light_in/automatic_grid.h"
+#include "voxel/grid.h"
 
 namespace volgi::app {
 
@@ -19,6 +23,43 @@ const std::map<std::string, Scheme> kSchemes = {{"ordinates", Scheme::ordinates}
                                                 {"conservative", Scheme::conservative},
                                                 {"gaitatzes2010", Scheme::gaitatzes2010},
                                                 {"lpv2009", Scheme::lpv2009}};
+
+/// Two corners in the file's frame, in any order.
+GridBox box_of(const std::vector<double>& bounds, const Scene& scene) {
+  const glm::dvec3 a(bounds[0], bounds[1], bounds[2]), b(bounds[3], bounds[4], bounds[5]);
+  const GridBox box{glm::vec3(glm::min(a, b) - scene.world_origin), glm::vec3(glm::max(a, b) - scene.world_origin)};
+  if (glm::any(glm::greaterThan(box.min, scene.bounds_max)) || glm::any(glm::lessThan(box.max, scene.bounds_min)))
+    throw Error(ExitCode::usage, "--bounds: nothing of the scene is in that box");
+  return box;
+}
+
+float longest_edge(const GridBox& box) {
+  const glm::vec3 e = box.max - box.min;
+  return std::max({e.x, e.y, e.z});
+}
+
+std::optional<GridBox> reached_from(const Scene& scene, glm::vec3 eye) {
+  const auto reached = reached_box(scene, places_of_light(scene, eye));
+  if (!reached) return {};
+  return GridBox{reached->min, reached->max};
+}
+
+/// Half of the edge: twice the cells. Less is not worth that a grid depends on where the camera stands.
+bool is_much_smaller(const GridBox& box, const Scene& scene) {
+  return longest_edge(box) < 0.5f * longest_edge({scene.bounds_min, scene.bounds_max});
+}
+
+void warn_of_large_cells(const Scene& scene, const GridBox& reached, const VolumeOptions& options) {
+  constexpr float LEAST_CELLS = 4.0f;  // along the shortest edge; fewer cannot hold a room (docs/theory.md#ordinates)
+  const glm::vec3 e = reached.max - reached.min;
+  const float shortest = std::min({e.x, e.y, e.z});
+  const float cell = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box).cell_size_m;
+  if (shortest < 1e-3f * longest_edge(reached) || shortest >= LEAST_CELLS * cell) return;  // a plane has no height
+  warn_once(
+      fmt::format("{}: cells of {:.2g} m for a place of {:.2g} x {:.2g} x {:.2g} m; its light will be wrong: a larger "
+                  "--grid, or --bounds around what matters",
+                  scene.name, cell, e.x, e.y, e.z));
+}
 
 size_t parse_bytes(const std::string& text) {
   std::uint64_t number = 0;
@@ -56,7 +97,18 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
                   "cells along the longest axis of the scene (by the scene: 48, more where they would exceed 0.3 m, "
                   "short ways of light or gaps that it passes)")
       ->check(CLI::Range(1, VolumeOptions::kMaxGridCells));
-  command.add_option("--scheme", scheme, "how the volume propagates light")
+  command
+      .add_option(
+          "--bounds", bounds,
+          "X0,Y0,Z0,X1,Y1,Z1: box of the grid in the file's frame [m]; what is outside of it is dark (what camera and "
+          "lamps reach, where that is less than half of the scene, or the scene)")
+      ->expected(6)
+      ->delimiter(',');
+  command
+      .add_option(
+          "--scheme", scheme,
+          "how the volume propagates light; conservative is a baseline: in the middle of walls 2.5 to 5 % too bright, "
+          "around things that float up to 15")
       ->check(CLI::IsMember({"ordinates", "conservative", "gaitatzes2010", "lpv2009"}))
       ->capture_default_str();
   command.add_option("--sh-order", sh_order, "order of the spherical harmonics of all schemes but 'ordinates'")
@@ -78,7 +130,7 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
 bool VolumeCommandOptions::given() const {
   const VolumeCommandOptions usual;
   return scheme != usual.scheme || bounces || iterations || directions || sh_order != usual.sh_order || grid_cells ||
-         !memory_limit.empty();
+         !bounds.empty() || !memory_limit.empty();
 }
 
 VolumeOptions VolumeCommandOptions::volume_options() const {
@@ -97,8 +149,17 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
   return o;
 }
 
-void VolumeCommandOptions::fit_grid(const Scene& scene, VolumeOptions& options) const {
-  if (!grid_cells) options.grid_cells = automatic_grid_cells(scene);
+void VolumeCommandOptions::fit_grid(const Scene& scene, const std::optional<glm::vec3>& eye,
+                                    VolumeOptions& options) const {
+  std::optional<GridBox> reached;
+  if (!bounds.empty()) {
+    options.grid_box = box_of(bounds, scene);
+  } else if (eye) {
+    reached = reached_from(scene, *eye);
+    if (reached && is_much_smaller(*reached, scene)) options.grid_box = reached;
+  }
+  if (!grid_cells) options.grid_cells = automatic_grid_cells(scene, options.grid_box);
+  if (reached) warn_of_large_cells(scene, *reached, options);
 }
 
 void VolumeCommandOptions::limit_threads() const {

@@ -11,22 +11,27 @@ class App;
 
 namespace volgi::app {
 
-/// What every command that makes a volume takes: --grid, --scheme, --sh-order, --directions, --bounces, --iterations,
+/// What every command that makes a volume takes: --grid, --bounds, --scheme, --sh-order, --directions, --bounces,
+/// --iterations,
 /// --memory-limit, --threads.
 struct VolumeCommandOptions {
   std::string scheme = "ordinates";
   std::optional<int> bounces, iterations, directions, threads;
   int sh_order = 1;
   std::optional<int> grid_cells;
-  std::string memory_limit;  // bytes, with K, M or G
+  std::vector<double> bounds;  // two corners in the file's frame [m]
+  std::string memory_limit;    // bytes, with K, M or G
 
   void add_to(CLI::App& command);
   /// Whether anything but threads was asked for.
   bool given() const;
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
-  /// Where --grid is not given: cells that suit the scene (automatic_grid_cells()).
-  void fit_grid(const Scene& scene, VolumeOptions& options) const;
+  /// Puts the grid around --bounds; without it around what the camera (if there is one) and lamps reach
+  /// (reached_box()), where that is less than half as long as the scene, and says so. Where --grid is not given: cells
+  /// that suit it (automatic_grid_cells()). Warns where what is seen is hardly higher than a cell.
+  /// @throws Error(usage) for bounds that no part of the scene is in.
+  void fit_grid(const Scene& scene, const std::optional<glm::vec3>& eye, VolumeOptions& options) const;
   /// Limits the number of threads from here on (--threads); for the life of the program.
   void limit_threads() const;
 };

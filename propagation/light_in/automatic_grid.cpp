@@ -33,16 +33,15 @@ double short_flights(const std::vector<Flight>& flights, float cell_size_m) {
   return all > 0.0 ? near / all : 0.0;
 }
 
-bool fits(const Scene& scene, int cells) { return cells <= MOST && cell_count(make_grid(scene, cells)) <= MOST_CELLS; }
-
 }  // namespace
 
-int automatic_grid_cells(const Scene& scene) {
-  int cells = grid_cells_by_size(scene);
+int automatic_grid_cells(const Scene& scene, const std::optional<GridBox>& box) {
+  const auto grid_of = [&](int cells) { return make_grid(scene, cells, glm::vec3(0.0f), box); };
+  const auto fits = [&](int cells) { return cells <= MOST && cell_count(grid_of(cells)) <= MOST_CELLS; };
+  int cells = grid_cells_by_size(scene, box);
   const std::vector<Flight> flights = flights_of(scene);
-  while (fits(scene, cells + STEP) && short_flights(flights, make_grid(scene, cells).cell_size_m) > SHORT_FLIGHTS)
-    cells += STEP;
-  return std::min(cells_that_keep_passages(scene, cells, MOST_CELLS), MOST);
+  while (fits(cells + STEP) && short_flights(flights, grid_of(cells).cell_size_m) > SHORT_FLIGHTS) cells += STEP;
+  return std::min(cells_that_keep_passages(scene, cells, MOST_CELLS, box), MOST);
 }
 
 }  // namespace volgi

@@ -1,5 +1,8 @@
 #pragma once
+#include <optional>
+
 #include "core/scene.h"
+#include "voxel/grid.h"
 
 namespace volgi {
 
@@ -9,7 +12,7 @@ namespace volgi {
 ///   shorter the volume does not carry right. Steps, a lamp's slit under the ceiling;
 /// - what air joins is joined by cells, through doors ajar (voxel/passages.h);
 /// with 256 along an axis, and 2^20 in all, at most. Cost: 2^14 rays, and what passages.h says; once for a scene.
-/// @throws Error as make_grid.
-int automatic_grid_cells(const Scene& scene);
+/// @param box  as make_grid. @throws Error as make_grid.
+int automatic_grid_cells(const Scene& scene, const std::optional<GridBox>& box = {});
 
 }  // namespace volgi

@@ -10,7 +10,7 @@ namespace volgi::screen {
 namespace {
 
 Grid grid_of(const Scene& scene, const VolumeOptions& options) {
-  return make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  return make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
 }
 
 class VoxelsOnGpu : public FrameVoxels {

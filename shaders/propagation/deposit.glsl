@@ -5,11 +5,11 @@
 #include "propagation/fixed_flux.glsl"
 
 // The side of the 5^3 cells around that is nearest and faces most alike; those that face the surface's way, of cells that
-// reach in front of it, before all others. None where the surface is the grid's rim and looks out.
+// reach in front of it, before all others, and before those the sides of cells to which the point's light comes. None where the surface is the grid's rim and looks out.
 int find_any_side(vec3 point, vec3 normal) {
   float reach = DEPOSIT_REACH * staircase_factor(normal);
-  if (!cell_inside(grid, ivec3(floor(point + reach * normal)))) return -1;
-  ivec3 centre = ivec3(floor(point));
+  ivec3 centre = ivec3(floor(point)), own = seeing_cell(point, normal);
+  if (!cell_inside(grid, ivec3(floor(point + reach * normal))) || !cell_inside(grid, own)) return -1;
   int best = -1;
   float best_score = -1e30;
   for (int k = 0; k < 125; ++k) {
@@ -19,11 +19,13 @@ int find_any_side(vec3 point, vec3 normal) {
     if (!cell_inside(grid, cell)) continue;
     bool in_front = dot(to_centre, normal) > -reach;
     uvec2 own_sides = cell_sides[cell_index(grid, cell)];
+    if ((own_sides.y & 63u) == 0u) continue;
+    bool seen = !hidden_from_cell(cell, own_sides, point, normal) && open_way(own, cell);
     for (int face = 0; face < 6; ++face) {
       if (!has_side(own_sides, face)) continue;
       int index = int(side_index(own_sides, face));
       float cosine = dot(sides[index].normal, normal);
-      float score = cosine - length(to_centre) + (in_front && cosine > 0.0 ? DEPOSIT_FIRST : 0.0);
+      float score = cosine - length(to_centre) + (in_front && cosine > 0.0 ? DEPOSIT_FIRST : 0.0) + (seen ? DEPOSIT_SEEN : 0.0);
       if (score > best_score) {
         best_score = score;
         best = index;

@@ -34,7 +34,6 @@
 #define WEIGHTED_INDIRECT_SLOT 11
 #define DIRECT_IRRADIANCE_SLOT 6
 #define INDIRECT_IRRADIANCE_SLOT 7
-#define DIRECT_SUM_SLOT 8
 
 // Lobes, of `conservative` and of pulses.
 #define LOBES_UNIT 0

@@ -39,23 +39,49 @@ bool rsm_texel(int light, int layer, ivec2 texel, out vec3 position, out vec3 no
   return any(greaterThan(irradiance_flux, vec3(0.0)));
 }
 
-// Whether the surface in a texel hides `position` from the light. It does when it lies on the light's side of the
-// receiver's plane, and the receiver lies behind the occluder's plane. Points of one plane fail both tests, facets of a
-// convex surface the first and of a concave one the second, so that no bias is needed beyond what the numbers err:
-// rasterizers place vertices to 1/256 of a texel, normals are rounded, and so are positions and depths (2^-20 allows
-// for the interpolation of depth, 2^-23 alone is not reached).
-bool rsm_texel_hides(ReflectiveShadowLayer view, int resolution, ivec3 texel, vec3 position, vec3 normal) {
+struct RsmReceiver {
+  vec3 position;
+  vec3 normal;     // geometric, on the side that the light shines on
+  vec3 to_viewer;  // unit
+};
+
+// How the surface in a texel hides a point from the light.
+struct RsmOccluder {
+  bool hides;
+  bool at_edge;  // it would, but lies so near to the receiver's plane that numbers cannot tell on which side
+  bool beyond;   // nothing is there, or what is lies behind the receiver's plane: an edge of what the light sees is near
+  float crease;  // across the light, in texels, how far the line is where the two planes meet
+};
+#define NO_CREASE 1e30  // facets of one bent surface have none
+
+// The surface in a texel hides a point when it lies on the light's side of the receiver's plane, and the receiver lies
+// behind the occluder's plane. Points of one plane fail both tests, facets of a convex surface the first and of a concave
+// one the second, so that no bias is needed beyond what the numbers err: rasterizers place vertices to 1/256 of a texel,
+// normals are rounded, and so are positions and depths (2^-20 allows for the interpolation of depth, 2^-23 alone is not
+// reached). On the line where two surfaces meet, what the numbers err is decided towards the viewer, who is on the
+// visible side of both.
+RsmOccluder rsm_occluder(ReflectiveShadowLayer view, int resolution, ivec3 texel, RsmReceiver x) {
+  RsmOccluder none = RsmOccluder(false, false, true, NO_CREASE);
   float depth = texelFetch(rsm_depth, texel, 0).r;
-  if (depth <= 0.0) return false;
+  if (depth <= 0.0) return none;
   float z = rsm_z_from_depth(view, depth);
   vec2 uv = (vec2(texel.xy) + 0.5) * (2.0 / float(resolution)) - 1.0;
   vec3 occluder = rsm_position_from_uvz(view, vec3(uv, z));
   vec3 occluder_normal = octahedral_decode(texelFetch(rsm_normal, texel, 0).rg);
-  vec3 d = occluder - position;
+  vec3 d = occluder - x.position;
   float range = view.directional != 0 ? view.depth_scale_m : z;
-  float error = rsm_texel_size_m(view, resolution, z) / 256.0 + (range + length(position)) / 1048576.0 +
-                length(d) * OCTAHEDRAL_ERROR_RAD;
-  return dot(d, normal) > error && dot(d, occluder_normal) > error;
+  float texel_m = rsm_texel_size_m(view, resolution, z);
+  float error = texel_m / 256.0 + (range + length(x.position)) / 1048576.0 + length(d) * OCTAHEDRAL_ERROR_RAD;
+  float above = dot(d, x.normal), in_front = dot(d - 16.0 * error * x.to_viewer, occluder_normal);
+  none.beyond = above < -error;
+  if (above <= -error || in_front <= error) return none;
+  // Along the light the planes are in_front / cosine apart, and across it that changes by the difference of n / cosine.
+  vec3 to_light = view.directional != 0 ? -view.forward : normalize(view.origin - x.position);
+  float occluder_cosine = max(dot(occluder_normal, to_light), 1e-6);
+  float slope = length(occluder_normal / occluder_cosine - x.normal / max(dot(x.normal, to_light), 1e-6));
+  bool sharp = dot(occluder_normal, x.normal) < 0.5;
+  float crease = sharp ? in_front / max(occluder_cosine * slope * texel_m, 1e-30) : NO_CREASE;
+  return RsmOccluder(above > error, above <= error, false, crease);
 }
 
 // What glass leaves of the light through a texel at distance z [m]: nothing is taken from what lies in front of the
@@ -71,24 +97,59 @@ vec3 rsm_texel_tint(ReflectiveShadowLayer view, ivec3 texel, float z) {
 #endif
 }
 
-// Share of the light that reaches `position`, between the four nearest texels. `normal` is the receiver's geometric one
-// on the side that the light shines on.
-vec3 rsm_visibility(int light, vec3 position, vec3 normal) {
+// A point in the square of four texels is a diagonal at most from what one of them shows, and two from the next ones.
+#define RSM_CONTACT_TEXELS 1.42
+#define RSM_CONTACT_NEXT_TEXELS 2.83
+
+// Whether one of the twelve texels around the four nearest hides the point, where the two surfaces meet: at a corner of what
+// the light sees, all four may lie outside.
+bool rsm_hidden_around(ReflectiveShadowLayer view, int resolution, ivec3 first, RsmReceiver x) {
+  for (int k = 0; k < 16; ++k) {
+    ivec2 step = ivec2(k & 3, k >> 2) - 1;
+    if (all(equal(step & ~1, ivec2(0)))) continue;  // one of the four
+    ivec2 texel = clamp(first.xy + step, ivec2(0), ivec2(resolution - 1));
+    RsmOccluder o = rsm_occluder(view, resolution, ivec3(texel, first.z), x);
+    if (o.hides && o.crease < RSM_CONTACT_NEXT_TEXELS) return true;
+  }
+  return false;
+}
+
+// Whether a texel beside one that lies at an edge hides the point, where the two surfaces meet. `away` leads from it.
+bool rsm_hidden_beside(ReflectiveShadowLayer view, int resolution, ivec3 texel, ivec2 away, RsmReceiver x) {
+  for (int k = 1; k < 4; ++k) {
+    ivec2 next = clamp(texel.xy + away * ivec2(k & 1, k >> 1), ivec2(0), ivec2(resolution - 1));
+    RsmOccluder o = rsm_occluder(view, resolution, ivec3(next, texel.z), x);
+    if (o.hides && o.crease < RSM_CONTACT_NEXT_TEXELS) return true;
+  }
+  return false;
+}
+
+// Share of the light that reaches a point, between the four nearest texels, by band: glass colours it. Where a surface
+// that hides it meets the receiver's own within a texel, texels beyond that edge have nothing to say: they would light
+// the inner edges of a closed box.
+vec3 rsm_visibility(int light, RsmReceiver x) {
   ReflectiveShadowLight l = rsm_lights[light];
-  int layer = rsm_layer_of_direction(l.layer_count, position - l.light.position);
+  int layer = rsm_layer_of_direction(l.layer_count, x.position - l.light.position);
   ReflectiveShadowLayer view = rsm_layers[l.first_layer + layer];
-  vec3 uvz = rsm_uvz_from_position(view, position);
+  vec3 uvz = rsm_uvz_from_position(view, x.position);
   vec2 at = (uvz.xy * 0.5 + 0.5) * float(l.resolution) - 0.5;
   ivec2 first = ivec2(floor(at));
   vec2 t = at - vec2(first);
   vec3 visible = vec3(0.0);
+  bool beyond = false;
   for (int k = 0; k < 4; ++k) {
     ivec2 corner = ivec2(k & 1, k >> 1);
-    ivec2 texel = clamp(first + corner, ivec2(0), ivec2(l.resolution - 1));
+    ivec3 texel = ivec3(clamp(first + corner, ivec2(0), ivec2(l.resolution - 1)), layer);
     vec2 w = mix(1.0 - t, t, vec2(corner));
-    if (!rsm_texel_hides(view, l.resolution, ivec3(texel, layer), position, normal))
-      visible += w.x * w.y * rsm_texel_tint(view, ivec3(texel, layer), uvz.z);
+    RsmOccluder o = rsm_occluder(view, l.resolution, texel, x);
+    if (o.hides && o.crease < RSM_CONTACT_TEXELS) return vec3(0.0);
+    if (o.at_edge && o.crease < RSM_CONTACT_TEXELS &&
+        rsm_hidden_beside(view, l.resolution, texel, 2 * corner - 1, x))
+      return vec3(0.0);
+    if (!o.hides) visible += w.x * w.y * rsm_texel_tint(view, texel, uvz.z);
+    beyond = beyond || o.beyond;
   }
+  if (beyond && visible != vec3(0.0) && rsm_hidden_around(view, l.resolution, ivec3(first, layer), x)) return vec3(0.0);
   return visible;
 }
 

@@ -36,14 +36,37 @@ SHARED_FUNCTION uint side_index(uvec2 cell_sides, int face) {
   return cell_sides.x + count_bits(cell_sides.y & ((1u << face) - 1u));
 }
 
+// Sides whose normals are within 45 degrees of each other may show one surface.
+#define SIMILAR_NORMAL_COSINE 0.70710678f
+
+// How far a point (cell units) lies in front of the surface that a side of `cell` shows.
+SHARED_FUNCTION float height_over_side(Side side, ivec3 cell, vec3 point) {
+  vec3 on_surface = vec3(cell) + 0.5f;
+  on_surface[side.face >> 1] = side.depth;
+  return dot(point - on_surface, side.normal);
+}
+// Whether a side hides a point of a surface of that normal from the cell that sees the side: the point lies behind it, by
+// more than two layers that count as one; where normals are alike also by more than the two can part within the half
+// diagonal of a face when they are one bent surface. Sides that let light pass do not hide.
+#define HIDDEN_DEPTH 0.02f
+#define HIDDEN_BEND 0.75f
+SHARED_FUNCTION bool side_hides(Side side, ivec3 cell, vec3 point, vec3 normal) {
+  float height = height_over_side(side, cell, point);
+  if (side.coverage < 1.0f || height >= -HIDDEN_DEPTH) return false;
+  float cosine = dot(side.normal, normal);
+  if (cosine < SIMILAR_NORMAL_COSINE) return true;
+  return height < -HIDDEN_DEPTH - HIDDEN_BEND * sqrt(max(1.0f - cosine * cosine, 0.0f)) / cosine;
+}
+// Of cells that see a point of a surface (voxel/seeing_cells.h), in cells.
+#define SEEING_FIRST 4.0f    // more than the squared distances of eight cells differ by
+#define SEEING_BEHIND 0.05f  // a surface may run through the centres of those that see it
+
 // Of staircase factors: as far in front of a surface, in cells, as the cell that sees it has its centre; less a little,
 // so that a wall on the grid's rim looks out of the grid and a cell behind it does not reach in front, despite
 // rounding.
 #define DEPOSIT_REACH 0.49f
-#define DEPOSIT_FIRST 8.0f  // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
-
-// Sides whose normals are within 45 degrees of each other may show one surface.
-#define SIMILAR_NORMAL_COSINE 0.70710678f
+#define DEPOSIT_FIRST 8.0f   // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
+#define DEPOSIT_SEEN 16.0f  // before these: cells from which nothing hides the point
 
 SHARED_FUNCTION float staircase_factor(vec3 normal) { return abs(normal.x) + abs(normal.y) + abs(normal.z); }
 

@@ -1,6 +1,8 @@
 // Which sides stand for a point of a surface.
 #include "voxel/cell_sides.glsl"
 #include "voxel/grid_block.glsl"
+#include "voxel/open_way.glsl"
+#include "voxel/seeing_cells.glsl"
 #include "voxel/sides.glsl"
 
 // Whether a surface whose plane passes the column's centre at `depth` lies behind the one that the side shows, as a floor
@@ -12,18 +14,26 @@ bool behind_side(Side side, vec3 normal, int axis, float depth) {
   return (side.depth - depth) * side.normal[axis] > 0.02 + 0.75 * bend;
 }
 
+bool hidden_from_cell(ivec3 cell, uvec2 own_sides, vec3 point, vec3 normal) {
+  uint count = count_bits(own_sides.y & 63u);
+  for (uint s = own_sides.x; s < own_sides.x + count; ++s) {
+    if (side_hides(sides[s], cell, point, normal)) return true;
+  }
+  return false;
+}
+
 // The sides of `axis` that a surface point (cell units) may belong to: the surface, continued as a plane to the centre of
 // the point's column, blocks one face there. Where the surface ends before the centre, the nearest columns are asked.
 // x: the first whose normal is alike, y: the first that faces the same way at all, of those before x; -1 for none.
-// front: 1 or 0 for sides that show a triangle's front or back only, -1 for any. place_matters is set where another point
+// front: 1 or 0 for sides that show a triangle's front or back only; -1 for any, of cells that see the point: a cell whose centre
+// is inside of a closed box has nothing of the light on the ground beside it. place_matters is set where another point
 // of the plane in the same cell may get another answer.
-ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_matters) {
+ivec2 find_side(vec3 point, vec3 normal, int axis, int front, ivec3 own, inout bool place_matters) {
   int b = axis_b(axis);
   int c = axis_c(axis);
   int up = normal[axis] > 0.0 ? 1 : 0;
   int face = 2 * axis + 1 - up;
   bool below = falls_below_centre(normal, axis);
-  ivec3 own = ivec3(floor(point));
   ivec2 found = ivec2(-1);
   for (int k = 0; k < 27 && found.x < 0; ++k) {
     int ring = k / 3;
@@ -43,6 +53,7 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front, inout bool place_m
     if (!has_side(own_sides, face)) continue;
     int index = int(side_index(own_sides, face));
     if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
+    if (front < 0 && (hidden_from_cell(cell, own_sides, point, normal) || !open_way(own, cell))) continue;
     float cosine = dot(sides[index].normal, normal);
     if (cosine >= SIMILAR_NORMAL_COSINE) found.x = index;
     if (cosine >= 0.0 && found.y < 0) found.y = index;
@@ -57,9 +68,10 @@ void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, 
                          inout bool place_matters) {
   ivec3 alike = ivec3(-1);
   ivec3 facing = ivec3(-1);
+  ivec3 own = front < 0 ? seeing_cell(point, normal) : ivec3(floor(point));
   for (int axis = 0; axis < 3; ++axis) {
     if (abs(normal[axis]) < 1e-3) continue;
-    ivec2 found = find_side(point, normal, axis, front, place_matters);
+    ivec2 found = find_side(point, normal, axis, front, own, place_matters);
     alike[axis] = found.x;
     facing[axis] = found.y;
   }

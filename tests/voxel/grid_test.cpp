@@ -29,6 +29,18 @@ TEST(Grid, CellIndexAndCoordinatesAreInverse) {
   EXPECT_EQ(shared::cell_index(grid, {0, 0, 1}), 15);  // z slowest
 }
 
+TEST(Grid, LiesAroundABoxIfThereIsOne) {
+  Scene scene;
+  add_quad(scene, add_material(scene, glm::vec3(0.5f)), {-100.0f, 0.0f, -100.0f}, {0.0f, 0.0f, 200.0f},
+           {200.0f, 0.0f, 0.0f});
+  const GridBox room{{-2.0f, 0.0f, -1.0f}, {2.0f, 2.0f, 1.0f}};
+  const Grid grid = make_grid(scene, 32, glm::vec3(0.0f), room);
+  EXPECT_EQ(grid.cells, glm::ivec3(32, 16, 16));
+  EXPECT_EQ(grid.origin, room.min);
+  EXPECT_EQ(grid_cells_by_size(scene, room), 48);
+  EXPECT_EQ(grid_cells_by_size(scene), 128);  // more of its cells lie in no height
+}
+
 TEST(Grid, FaceIndexAndCoordinatesAreInverse) {
   const Grid grid = odd_grid();
   for (int axis = 0; axis < 3; ++axis) {

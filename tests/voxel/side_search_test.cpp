@@ -5,6 +5,7 @@
 #include "core/surface.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/voxel/cpu_voxels.h"
+#include "voxel/seeing_cells.h"
 #include "voxel/side_search_around.h"
 #include "voxel/voxelize_cpu.h"
 
@@ -39,13 +40,14 @@ TEST(SidesOfPoint, FindsWhatAWallShows) {
 SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int front) {
   const int order[9] = {4, 0, 1, 2, 3, 5, 6, 7, 8};
   SidesOfPoint out;
+  const glm::ivec3 seeing = front < 0 ? seeing_cell(v, point, n) : glm::ivec3(glm::floor(point));
   for (float min_cosine : {0.70710678f, 0.0f}) {
     for (int a = 0; a < 3; ++a) {
       const int b = shared::axis_b(a), c = shared::axis_c(a);
       if (std::abs(n[a]) < 1e-3f) continue;
       out.sides[a] = -1;
       for (int k = 0; k < 27 && out.sides[a] < 0; ++k) {
-        glm::ivec3 cell(glm::floor(point));
+        glm::ivec3 cell = seeing;
         cell[b] += order[k / 3] % 3 - 1;
         cell[c] += order[k / 3] / 3 - 1;
         const float depth =
@@ -56,6 +58,7 @@ SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int 
         if (!shared::cell_inside(v.grid(), cell)) continue;
         const Side* side = side_of(v, cell, shared::face_of(a, !(n[a] > 0.0f)));
         if (side == nullptr || (front >= 0 && side->front != front)) continue;
+        if (front < 0 && (hidden_from_cell(v, cell, point, n) || !open_way(v, seeing, cell))) continue;
         const float cosine = glm::dot(side->normal, n), bounded = glm::clamp(cosine, 0.1f, 1.0f);
         const float behind = (side->depth - depth) * side->normal[a];
         if (front >= 0 && behind > 0.02f + 0.75f * std::sqrt(1.0f - bounded * bounded) / bounded) continue;

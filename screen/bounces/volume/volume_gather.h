@@ -25,9 +25,6 @@ class VolumeGather : private SmoothLight {
     const VoxelGridGl& voxels;
     const gl::Buffer& direct_irradiance;  // per side, vec4 [W m^-2]
     const gl::Buffer& indirect_irradiance;
-    /// Direct light may have come into sealed cells, by maps that have texels: a hundredth of what sides have in the
-    /// mean counts as none, where a pixel looks for sides that show its surface.
-    bool seeps = false;
     bool direct_is_apart = true;  // false: nothing is in direct_irradiance, and direct() stays as it is
   };
   /// @param with  other smooth light, gathered together with this at the pixels that need it; null: every pixel.
@@ -48,12 +45,10 @@ class VolumeGather : private SmoothLight {
   void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) override;
   void draw(const GBuffer& gbuffer, gl::PassTimer& timer);
   void bind_volume(const gl::Program& program) const;
-  void sum(const gl::Buffer& irradiance) const;
 
   gl::Texture direct_, indirect_;
   gl::Framebuffer framebuffer_;
-  gl::Buffer sum_, partials_;  // over all sides: what is dim is judged by their mean
-  gl::Program program_, sum_sides_, sum_partials_;
+  gl::Program program_;
   std::array<std::optional<gl::Program>, 2> listed_;  // without and with direct light
   const Volume* volume_ = nullptr;                    // within run()
   glm::vec4 viewer_{0.0f};

@@ -101,7 +101,8 @@ size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
 
 /// FrameVolume::follow_scene.
 bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume) {
-  if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells), volume.grid())) return false;
+  if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box), volume.grid()))
+    return false;
   volume.scene_moved();
   return true;
 }
@@ -146,7 +147,7 @@ class SidesOnCpu : public FrameVolume {
       upload_values(volume_.irradiance().indirect, indirect_);
     }
     const bool apart = first_bounce == nullptr || first_is_apart();
-    gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, false, apart},
+    gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, apart},
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool first_is_apart() const override { return options_.bounces.has_value(); }
@@ -287,7 +288,7 @@ class PulseOnCpu : public FrameVolume {
 }  // namespace
 
 size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
   const ExpectedSides expected = expected_sides(scene, grid);
   const size_t uploaded = sizeof(Grid) + 8 * cell_count(grid) + sizeof(shared::Side) * expected.sides;
   const size_t bytes = bytes_expected_cpu(scene, grid, options, expected) + uploaded;

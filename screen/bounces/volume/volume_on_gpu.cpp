@@ -31,7 +31,8 @@ class LitVoxels {
   LitVoxels(const Scene& scene, const VolumeOptions& options)
       : scene_(scene),
         options_(options),
-        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells), options.voxelization),
+        voxelization_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box),
+                      options.voxelization),
         emitters_(emitter_pieces(scene, voxelization_.voxels().grid)) {
     follow_albedo();
   }
@@ -56,7 +57,8 @@ class LitVoxels {
   }
   /// @return false where the scene's bounds make another grid.
   bool follow_scene() {
-    if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells), voxels().grid)) return false;
+    if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells, options_.grid_box), voxels().grid))
+      return false;
     voxelization_.count_again();
     emitters_ = emitter_pieces(scene_, voxels().grid);
     follow_albedo();
@@ -128,8 +130,7 @@ class SidesOnGpu : public FrameVolume {
     bounce_report_ = bounces_.run(lit_.voxels(), lit_.flux(), lit_.emits() || sky_apart, rules_, timer,
                                   streaming_sky(scene_, options_));
     irradiance_.run(lit_.voxels(), lit_.flux(), bounces_, timer);
-    gather_.run(gbuffer, camera,
-                {lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), sky_apart, first_is_apart_},
+    gather_.run(gbuffer, camera, {lit_.voxels(), irradiance_.direct(), irradiance_.indirect(), first_is_apart_},
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool follow_scene() override {
@@ -221,7 +222,7 @@ class PulseOnGpu : public FrameVolume {
 }  // namespace
 
 size_t volume_bytes_on_gpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
-  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells);
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
   const SchemeOptions& scheme = options.scheme;
   const ExpectedSides expected = expected_sides(scene, grid);
   const std::uint32_t capacity = side_capacity_for(expected.sides);

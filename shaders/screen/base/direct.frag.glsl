@@ -11,8 +11,8 @@ uniform int light;
 #ifdef SHINES
 layout(binding = GBUFFER_DIFFUSE_UNIT) uniform sampler2D diffuse_map;
 layout(binding = GBUFFER_MIRROR_UNIT) uniform sampler2D mirror_map;
-uniform vec4 viewer;  // position and 1, or the direction towards an orthographic camera and 0
 #endif
+uniform vec4 viewer;  // position and 1, or the direction towards an orthographic camera and 0
 
 layout(location = 0) out vec4 radiance;
 
@@ -27,10 +27,10 @@ void main() {
   vec3 geometric_normal = octahedral_decode(normals.zw);
   // The light must be on the side of the triangle that the viewer sees.
   if (cosine <= 0.0 || dot(geometric_normal, to_light) <= 0.0 || irradiance == vec3(0.0)) discard;
-  vec3 visibility = rsm_visibility(light, position.xyz, geometric_normal);
+  vec3 to_viewer = normalize(viewer.xyz - position.xyz * viewer.w);
+  vec3 visibility = rsm_visibility(light, RsmReceiver(position.xyz, geometric_normal, to_viewer));
 #ifdef SHINES
   vec4 diffuse = texelFetch(diffuse_map, pixel, 0), mirror = texelFetch(mirror_map, pixel, 0);
-  vec3 to_viewer = normalize(viewer.xyz - position.xyz * viewer.w);
   vec3 reflected = reflected_to_viewer(Shine(diffuse.rgb, mirror.rgb, mirror.a, diffuse.a), octahedral_decode(normals.xy),
                                        to_viewer, to_light);
   radiance = vec4(reflected * (visibility * irradiance), 1.0);

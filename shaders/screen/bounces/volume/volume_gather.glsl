@@ -1,21 +1,18 @@
-// Irradiance of a pixel from the sides of the cells in front of its surface: trilinear over the eight cells around a
-// point half a cell in front of it, sides with like normals only, and only of cells that lie on the pixel's side of their
-// own surfaces, so that neither the surface nor the room behind it lights it. docs/theory.md#reconstruction.
+// Irradiance of a pixel from the sides of the cells in front of its surface: trilinear over those of the eight cells around
+// a point half a cell in front of it that see the pixel (seeing_cells), sides with like normals only, and only of cells that
+// lie on the pixel's side of their own surfaces, so that neither the surface nor the room behind it lights it.
+// docs/theory.md#reconstruction.
 #ifndef VOLGI_VOLUME_GATHER_GLSL
 #define VOLGI_VOLUME_GATHER_GLSL
 #include "propagation/neighbourhood.glsl"
 #include "propagation/slots.shared.h"
 #include "screen/base/gbuffer.glsl"
 #include "shared/octahedral.glsl"
-#include "voxel/side_count.glsl"
+#include "voxel/seeing_cells.glsl"
 #include "voxel/sides.glsl"
 
 layout(std430, binding = DIRECT_IRRADIANCE_SLOT) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
 layout(std430, binding = INDIRECT_IRRADIANCE_SLOT) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
-
-layout(std430, binding = DIRECT_SUM_SLOT) readonly buffer DirectSum { vec4 direct_sum; };
-
-uniform float seeps;  // share of the mean over sides that counts as dark
 
 uniform vec4 viewer;  // xyz position, w 1; or towards the viewer, w 0 (orthographic)
 
@@ -49,8 +46,8 @@ void gather_cell(ivec3 cell, vec3 point, vec3 normal, float min_cosine, bool che
 
 const uint ANY_CELL = 0xffffffffu;
 
-// `open`: bits of reachable_cells around the cell that the point lies in, and no other cells; or ANY_CELL.
-Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_plane, int reach, uint open) {
+// `open`: bits of reachable_cells around `from`, and no other cells; or ANY_CELL.
+Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_plane, int reach, ivec3 from, uint open) {
   Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
   vec3 low = floor(point - 0.5);
   vec3 t = point - 0.5 - low;
@@ -58,7 +55,7 @@ Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_pla
     for (int y = -reach; y <= 1 + reach; ++y) {
       for (int x = -reach; x <= 1 + reach; ++x) {
         ivec3 cell = ivec3(low) + ivec3(x, y, z);
-        ivec3 bit = cell - ivec3(floor(point)) + 1;
+        ivec3 bit = cell - from + 1;
         if (open != ANY_CELL) {
           if (any(lessThan(bit, ivec3(0))) || any(greaterThan(bit, ivec3(2)))) continue;
           if (((open >> (bit.x + 3 * bit.y + 9 * bit.z)) & 1u) == 0u) continue;
@@ -72,10 +69,16 @@ Gathered gather_around(vec3 point, vec3 normal, float min_cosine, bool check_pla
   return g;
 }
 
-// What may have seeped into what is sealed is no light.
-bool is_lit(Gathered g) {
-  vec3 seeped = seeps > 0.0 ? direct_sum.rgb * (seeps / float(max(side_count, 1u))) : vec3(0.0);
-  return g.weight > 0.0 && any(greaterThan(g.direct + g.indirect, seeped * g.weight));
+// The eight cells around, of those that see the pixel.
+Gathered gather_seeing(SeeingCells seeing, vec3 point, vec3 normal) {
+  Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
+  vec3 t = point - 0.5 - vec3(seeing.low);
+  for (int k = 0; k < 8; ++k) {
+    if (((seeing.joined >> k) & 1u) == 0u) continue;
+    vec3 w = mix(1.0 - t, t, vec3(k & 1, (k >> 1) & 1, k >> 2));
+    gather_cell(corner_cell(seeing, k), point, normal, SIMILAR_NORMAL_COSINE, true, w.x * w.y * w.z + 1e-6, g);
+  }
+  return g;
 }
 
 // @return its weight is 0 where there is nothing.
@@ -90,20 +93,22 @@ Gathered gather_pixel(vec3 position, vec3 normal) {
   }
   // A surface too small or too tilted for the grid to show takes what is near, then what faces its way at
   // all, at last (rims of boards, thin rods) whatever surface is near.
-  Gathered g = gather_around(point, normal, 0.70710678, true, 0, ANY_CELL);
-  if (!is_lit(g) && cell_inside(grid, ivec3(floor(point)))) {
-    // The sealed inside of a pillar a cell wide faces the same way as its outside: what can be reached from the front
-    // comes first. A sealed room stays dark: nothing lit can be reached.
-    uint open = reachable_cells(ivec3(floor(point)));
-    Gathered front = gather_around(point, normal, 0.70710678, true, 1, open);
-    if (!is_lit(front)) front = gather_around(point, normal, 0.0, true, 1, open);
-    if (!is_lit(front)) front = gather_around(point, normal, 0.0, false, 1, open);
-    if (is_lit(front)) g = front;
+  vec3 beside = point - (0.5 - 2.0 * HIDDEN_DEPTH) * normal;
+  SeeingCells seeing = seeing_cells(point, beside, normal);
+  Gathered g = Gathered(vec3(0.0), vec3(0.0), 0.0);
+  if (seeing.nearest >= 0) {
+    g = gather_seeing(seeing, point, normal);
+    ivec3 from = corner_cell(seeing, seeing.nearest);
+    if (!cell_inside(grid, from)) return g;  // the dark outside
+    uint open = g.weight == 0.0 ? reachable_cells(from) : 0u;
+    if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, from, open);
+    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, from, open);
+    if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, from, open);
   }
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, ANY_CELL);
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, ANY_CELL);
-  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, ANY_CELL);
-  if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, ivec3(0), ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, ivec3(0), ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, ivec3(0), ANY_CELL);
+  if (g.weight == 0.0) g = gather_around(point, normal, -1.0, true, 2, ivec3(0), ANY_CELL);
   return g;
 }
 

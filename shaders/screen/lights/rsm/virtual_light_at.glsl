@@ -75,7 +75,7 @@ bool meet(ReflectiveShadowLayer view, int resolution, int layer, vec2 uv, ivec2 
       flat_around = false;
       continue;
     }
-    // What the numbers err, as in rsm_texel_hides.
+    // What the numbers err, as in rsm_occluder.
     vec3 d = other.middle - own.middle;
     float range = view.directional != 0 ? view.depth_scale_m : own.z;
     float error = size / 256.0 + (range + length(own.middle)) / 1048576.0 + length(d) * OCTAHEDRAL_ERROR_RAD;

@@ -20,7 +20,7 @@ vec3 sky_uvz(int part, vec3 position) {
               dot(sky_parts[part].way.xyz, position) + sky_parts[part].way.w);
 }
 
-// Whether the surface in a texel hides a point from the part, as rsm_texel_hides() of shared/reflective_shadow_map.glsl
+// Whether the surface in a texel hides a point from the part, as rsm_occluder() of shared/reflective_shadow_map.glsl
 // tells it. @param uvz  the point in the map.
 bool sky_texel_hides(int part, ivec2 texel, vec3 uvz, vec3 position, vec3 geometric) {
   float depth = texelFetch(sky_depth, ivec3(texel, part), 0).r;
