@@ -48,7 +48,7 @@ bool reached(const EmbreeScene& embree, glm::vec3 from, glm::vec3 corner, glm::v
 }
 
 /// Middle of what the cell's other sides leave of it in the plane of the side's face, cell units; those of the side's
-/// own surface leave all. As side_gather.comp.glsl has it.
+/// own surface leave all. As shaders/voxel/side_middle.glsl has it.
 glm::vec3 middle_of(const VoxelGrid& voxels, const Side& side, glm::ivec3 cell) {
   const glm::uvec2 cell_sides = voxels.cell_sides(cell);
   glm::vec3 low(cell), high = low + 1.0f;
