@@ -26,6 +26,8 @@ foreach(folder IN LISTS folders)
   install(FILES ${headers} DESTINATION ${VOLGI_HEADER_DIR}/${folder})
 endforeach()
 install(DIRECTORY shaders DESTINATION ${VOLGI_HEADER_DIR} FILES_MATCHING PATTERN "*.shared.h")
+# For shaders of other programs (examples/minimal).
+install(FILES shaders/screen/library/volume_light.glsl DESTINATION ${VOLGI_HEADER_DIR}/shaders/screen/library)
 
 install(FILES LICENSE TYPE DOC)
 
