@@ -26,8 +26,8 @@ constexpr Parameter PARAMETERS[] = {
         {"patches.grid", "", "coarsest patches on a side of a map, a power of two"}, {1, 1024},
         [](Options& o) -> auto& { return o.grid; }),
     number<Options>(
-        {"patches.depth", "", "how often a patch may be divided by four"}, {0, MAX_PATCH_DEPTH},
-        [](Options& o) -> auto& { return o.depth; }),
+        {"patches.depth", "", "how often a patch may be divided by four, where its map has texels for it"},
+        {0, MAX_PATCH_DEPTH}, [](Options& o) -> auto& { return o.depth; }),
     choice<Options>(
         {"patches.light", "",
          "of a patch: of its middle and all solid angles alike, as printed; of its middle and its own solid angle; or "
