@@ -90,8 +90,6 @@ void LightPatches::run(const ReflectiveShadowMap& maps, float scene_diagonal_m, 
   const auto scope = timer.scope(name);
   make_room(maps);
   list_.buffer.clear();
-  choose_.set("depth_threshold_m", options_.depth_range * scene_diagonal_m);
-  choose_.set("normal_threshold", options_.normal_range);
   int first_root = 0;
   for (int light = 0; light < maps.light_count(); ++light) {
     const int roots = maps.layer_count(light) * options_.grid * options_.grid;
@@ -104,6 +102,9 @@ void LightPatches::run(const ReflectiveShadowMap& maps, float scene_diagonal_m, 
       program->set("root_count", tree_.roots);
       program->set("first_root", first_root);
       program->set("grid", options_.grid);
+      program->set("depth_threshold_m", options_.depth_range * scene_diagonal_m);
+      program->set("normal_threshold", options_.normal_range);
+      program->set("at_edges", options_.edges ? 1 : 0);
     }
     make_patches(roots << (2 * deepest()));
     choose(roots);

@@ -20,6 +20,7 @@ struct LightPatchOptions {
   enum class Light { printed, exact, summed } light = Light::printed;
   float depth_range = 0.05f;  // of radiosity: of the scene's diagonal; a patch with more is one of several surfaces
   float normal_range = 0.5f;  // the same for components of normals
+  bool edges = false;         // of hierarchical: divides those from any distance, too; ours
 };
 
 /// The tree of patches as gathers take it. Roots are the virtual lights of the list.

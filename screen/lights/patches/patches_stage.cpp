@@ -34,11 +34,15 @@ constexpr Parameter PARAMETERS[] = {
          "the sum over it"},
         LIGHTS, [](Options& o) -> auto& { return o.light; }),
     number<Options>(
-        {"patches.depth_range", "", "of the scene's diagonal, above which radiosity divides a patch"}, {0, 10},
-        [](Options& o) -> auto& { return o.depth_range; }),
+        {"patches.depth_range", "",
+         "of the scene's diagonal, above which a patch shows several surfaces: radiosity divides it"},
+        {0, 10}, [](Options& o) -> auto& { return o.depth_range; }),
     number<Options>(
-        {"patches.normal_range", "", "of a component of its normals, above which radiosity divides a patch"}, {0, 2},
+        {"patches.normal_range", "", "of a component of its normals, above which it does"}, {0, 2},
         [](Options& o) -> auto& { return o.normal_range; }),
+    yes_no<Options>(
+        {"patches.edges", "", "hierarchical divides such patches, too, from any distance"},
+        [](Options& o) -> auto& { return o.edges; }),
 };
 
 StageRole role(const FrameOptions& options) {
