@@ -12,7 +12,7 @@ namespace volgi::app {
 struct Nichols2010Options {
   std::vector<std::string> scenes;  // of tables 3.2 and 4.1; none: those of like kind
   std::vector<int> sizes{512, 1024};
-  int error_size = 192;  // of pictures whose errors are measured
+  int error_size = 128;  // of pictures whose errors are measured
   int all_texels = 256;  // on a side of the light's map, all of which light in the yardstick
   int frames = 3;
   bool quick = false;  // one scene, small, one frame: tries the benchmark

@@ -137,12 +137,16 @@ nlohmann::json figure_4_9_and_bounds(const Bench& bench) {
     row["light_space"] =
         error_of("hierarchical", {"multires.cells=16384", "patches.depth=3", "multires.threshold=0.1"});
     row["together"] = error_of("hierarchical", {"patches.depth=3", "multires.threshold=0.1"});
+    row["edges"] = error_of("hierarchical", {"multires.cells=16384", "patches.depth=3", "patches.edges=on"});
     row["radiosity"] = error_of("radiosity", {});
     row["grid"] = error_of("multires", {});
-    bench.show(text + fmt::format("\n    light space (hierarchical, tau 0.1, depth 3) {}   together {}   radiosity and "
-                                  "fragments {}   16^2 lights and fragments {}\n",
-                                  text_of(row["light_space"]), text_of(row["together"]), text_of(row["radiosity"]),
-                                  text_of(row["grid"])));
+    bench.show(
+        text +
+        fmt::format(
+            "\n    light space (hierarchical, tau 0.1, depth 3) {}, edges divided {}   together {}   radiosity and "
+            "fragments {}   16^2 lights and fragments {}\n",
+            text_of(row["light_space"]), text_of(row["edges"]), text_of(row["together"]), text_of(row["radiosity"]),
+            text_of(row["grid"])));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -301,7 +301,7 @@ std::vector<Flickering> flickering() {
   std::vector<Flickering> all;
   const auto add = [&](const std::string& name, Gi mode, size_t list) -> FrameOptions& {
     FrameOptions o = options(mode, 64);
-    if (mode == Gi("lattice")) o = picture_options(mode, {64, 64});
+    if (list >= 2) o = picture_options(mode, {64, 64});  // with what its name stands for
     o.light = LightPart::indirect;
     o.backend = tested_backend();
     all.push_back({name, o, list});
@@ -317,6 +317,10 @@ std::vector<Flickering> flickering() {
   screen::WaveLatticeOptions& lattice = add("lattice", "lattice", 2).of<screen::WaveLatticeOptions>();
   lattice.angle_deg = 10.0f;
   lattice.on_percent = 25.0f;
+  // Those of a hierarchy are held to its roots.
+  add("multires", "multires", 3);
+  add("radiosity", "radiosity", 4);
+  add("hierarchical", "hierarchical", 5);
   return all;
 }
 
@@ -334,7 +338,7 @@ TEST_F(FirstBounce, Flicker) {
   for (const Flickering& f : all) frames.push_back(std::make_unique<screen::Frame>(scene, f.options));
   gl::PassTimer timer(context().software(), false);
   std::vector<Flicker> of_frame(all.size());
-  Flicker of_exact[3];
+  Flicker of_exact[6];
   for (int k = 0; k <= 20; ++k) {  // of 200; docs/results/first-bounce.md has all of them
     size_t lists = 0;
     for (size_t m = 0; m < frames.size(); ++m) {

@@ -41,21 +41,22 @@ LightPatches::LightPatches(const LightPatchOptions& options)
 }
 
 void LightPatches::make_room(const ReflectiveShadowMap& maps) {
-  const int finest = options_.grid << deepest();
-  list_.of_light.clear();
   tree_.roots = 0;
-  tree_.deepest = deepest();
-  const int listed_on_side = options_.method == Method::radiosity ? finest : options_.grid;
+  tree_.deepest = options_.method == Method::grid ? 0 : options_.depth;
   for (int light = 0; light < maps.light_count(); ++light) {
     const int inner = maps.resolution(light) - 2 * RSM_MARGIN_TEXELS;
-    if (finest > inner)
-      throw Error(ExitCode::usage,
-                  "patches.grid and patches.depth make " + std::to_string(finest) +
-                      " patches on a side of a map, which has " + std::to_string(inner) +
-                      " texels without its margin; make them coarser, or the map larger (shadow.spot)");
+    if (options_.grid > inner)
+      throw Error(ExitCode::usage, "patches.grid=" + std::to_string(options_.grid) +
+                                       ": more patches on a side of a map than the " + std::to_string(inner) +
+                                       " texels that it has without its margin; make it less, or the map larger "
+                                       "(shadow.spot, shadow.cube, shadow.sun)");
+    while (options_.grid << tree_.deepest > inner) --tree_.deepest;
     tree_.roots += maps.layer_count(light) * options_.grid * options_.grid;
-    list_.of_light.push_back(maps.layer_count(light) * listed_on_side * listed_on_side);
   }
+  const int listed_on_side = options_.method == Method::radiosity ? options_.grid << deepest() : options_.grid;
+  list_.of_light.clear();
+  for (int light = 0; light < maps.light_count(); ++light)
+    list_.of_light.push_back(maps.layer_count(light) * listed_on_side * listed_on_side);
   list_.reflected = std::accumulate(list_.of_light.begin(), list_.of_light.end(), 0);
   const auto patches = size_t(std::max(shared::first_of_depth(tree_.roots, deepest() + 1), 1));
   const GLuint before = tree_.patches.id();
@@ -89,8 +90,6 @@ void LightPatches::run(const ReflectiveShadowMap& maps, float scene_diagonal_m, 
   const auto scope = timer.scope(name);
   make_room(maps);
   list_.buffer.clear();
-  choose_.set("depth_threshold_m", options_.depth_range * scene_diagonal_m);
-  choose_.set("normal_threshold", options_.normal_range);
   int first_root = 0;
   for (int light = 0; light < maps.light_count(); ++light) {
     const int roots = maps.layer_count(light) * options_.grid * options_.grid;
@@ -103,6 +102,9 @@ void LightPatches::run(const ReflectiveShadowMap& maps, float scene_diagonal_m, 
       program->set("root_count", tree_.roots);
       program->set("first_root", first_root);
       program->set("grid", options_.grid);
+      program->set("depth_threshold_m", options_.depth_range * scene_diagonal_m);
+      program->set("normal_threshold", options_.normal_range);
+      program->set("at_edges", options_.edges ? 1 : 0);
     }
     make_patches(roots << (2 * deepest()));
     choose(roots);

@@ -12,13 +12,15 @@ struct LightPatchOptions {
   /// frame (§4.2.3). hierarchical: roots, and the tree below them for each fragment to choose from (§4.2.4).
   enum class Method { grid, radiosity, hierarchical } method = Method::grid;
   int grid = 16;  // roots on a side of a layer of a map: a power of two
-  int depth = 2;  // of the tree, of radiosity and hierarchical: parts of parts, up to MAX_PATCH_DEPTH
+  /// Of the tree, of radiosity and hierarchical: parts of parts, up to MAX_PATCH_DEPTH, and no smaller than texels.
+  int depth = 2;
   /// printed: what the middle texel shows stands for all of a patch, all solid angles are alike, areas without the
   /// cosine (eqs. 4.2 to 4.4). exact: the same texel, with the patch's own solid angle and the cosine. summed: flux and
   /// area of all its texels, mean position and normal by flux.
   enum class Light { printed, exact, summed } light = Light::printed;
   float depth_range = 0.05f;  // of radiosity: of the scene's diagonal; a patch with more is one of several surfaces
   float normal_range = 0.5f;  // the same for components of normals
+  bool edges = false;         // of hierarchical: divides those from any distance, too; ours
 };
 
 /// The tree of patches as gathers take it. Roots are the virtual lights of the list.
@@ -42,7 +44,7 @@ class LightPatches {
   static void check(const LightPatchOptions& options);
   explicit LightPatches(const LightPatchOptions& options);
 
-  /// @throws Error(usage) when patches are smaller than texels.
+  /// @throws Error(usage) when roots are smaller than texels.
   void run(const ReflectiveShadowMap& maps, float scene_diagonal_m, gl::PassTimer& timer);
 
   const VirtualLightListGl& lights() const { return list_; }  // most of radiosity's have no flux
@@ -51,7 +53,7 @@ class LightPatches {
   const gl::Buffer& ranges() const { return ranges_; }  // shared::PatchRange, as patches
 
  private:
-  int deepest() const { return options_.method == LightPatchOptions::Method::grid ? 0 : options_.depth; }
+  int deepest() const { return tree_.deepest; }
   void make_room(const ReflectiveShadowMap& maps);
   void make_patches(int patches_of_light_at_deepest);
   void choose(int roots_of_light);

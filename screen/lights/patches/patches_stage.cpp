@@ -26,19 +26,23 @@ constexpr Parameter PARAMETERS[] = {
         {"patches.grid", "", "coarsest patches on a side of a map, a power of two"}, {1, 1024},
         [](Options& o) -> auto& { return o.grid; }),
     number<Options>(
-        {"patches.depth", "", "how often a patch may be divided by four"}, {0, MAX_PATCH_DEPTH},
-        [](Options& o) -> auto& { return o.depth; }),
+        {"patches.depth", "", "how often a patch may be divided by four, where its map has texels for it"},
+        {0, MAX_PATCH_DEPTH}, [](Options& o) -> auto& { return o.depth; }),
     choice<Options>(
         {"patches.light", "",
          "of a patch: of its middle and all solid angles alike, as printed; of its middle and its own solid angle; or "
          "the sum over it"},
         LIGHTS, [](Options& o) -> auto& { return o.light; }),
     number<Options>(
-        {"patches.depth_range", "", "of the scene's diagonal, above which radiosity divides a patch"}, {0, 10},
-        [](Options& o) -> auto& { return o.depth_range; }),
+        {"patches.depth_range", "",
+         "of the scene's diagonal, above which a patch shows several surfaces: radiosity divides it"},
+        {0, 10}, [](Options& o) -> auto& { return o.depth_range; }),
     number<Options>(
-        {"patches.normal_range", "", "of a component of its normals, above which radiosity divides a patch"}, {0, 2},
+        {"patches.normal_range", "", "of a component of its normals, above which it does"}, {0, 2},
         [](Options& o) -> auto& { return o.normal_range; }),
+    yes_no<Options>(
+        {"patches.edges", "", "hierarchical divides such patches, too, from any distance"},
+        [](Options& o) -> auto& { return o.edges; }),
 };
 
 StageRole role(const FrameOptions& options) {

@@ -9,14 +9,6 @@
 layout(local_size_x = LINEAR_GROUP) in;
 layout(std430, binding = CHOSEN_PATCHES_SLOT) writeonly buffer Chosen { VirtualLight chosen[]; };
 uniform int deepest;
-uniform float depth_threshold_m;
-uniform float normal_threshold;
-
-bool is_discontinuous(PatchRange range) {
-  vec3 turn = range.most - range.least;
-  return range.nearest < PATCH_BACKGROUND &&
-         (range.farthest - range.nearest > depth_threshold_m || max(turn.x, max(turn.y, turn.z)) > normal_threshold);
-}
 
 bool is_chosen(int place) {
 #ifdef BY_SIZE

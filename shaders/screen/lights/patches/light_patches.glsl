@@ -15,6 +15,9 @@ uniform int root_count;  // of all lights
 uniform int first_root;  // of this one
 uniform int grid;        // roots on a side of a layer
 uniform int depth;
+uniform float depth_threshold_m;
+uniform float normal_threshold;
+uniform int at_edges;  // 1: patches of several surfaces give way to their parts from any distance
 
 // A patch of this light: which layer, and which texels of it, without the margin that the cone does not fill.
 struct Cell {
@@ -57,6 +60,19 @@ float surface_of(ReflectiveShadowLayer view, vec3 position, vec3 normal, float m
   vec3 from_light = view.directional != 0 ? view.forward : position - view.origin;
   float cosine = -dot(from_light, normal) / max(length(from_light), 1e-30);
   return measure * squared_distance(view, position) / max(cosine, 0.05);
+}
+
+bool is_discontinuous(PatchRange range) {
+  vec3 turn = range.most - range.least;
+  return range.nearest < PATCH_BACKGROUND &&
+         (range.farthest - range.nearest > depth_threshold_m || max(turn.x, max(turn.y, turn.z)) > normal_threshold);
+}
+
+#define FROM_ANY_DISTANCE_M2 1e30
+
+// bound_m2 of a patch whose largest texel, or part, has `bound_m2`.
+float bound_of(PatchRange range, float bound_m2) {
+  return at_edges != 0 && is_discontinuous(range) ? FROM_ANY_DISTANCE_M2 : min(bound_m2, FROM_ANY_DISTANCE_M2);
 }
 
 #if defined(SAMPLED)

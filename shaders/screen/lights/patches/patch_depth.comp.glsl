@@ -31,6 +31,7 @@ void main() {
     add_part(light_part, origin, sum);
 #endif
   }
+  sum.bound_m2 = bound_of(range, sum.bound_m2);
 #ifdef SAMPLED
   set_light(index, sum);
 #else

@@ -58,7 +58,7 @@ void main() {
       if (inside) add_texel(view, cell.layer, texel, sum);
     }
   }
-  sum.bound_m2 *= even_measure(view);
+  sum.bound_m2 = bound_of(range, sum.bound_m2 * even_measure(view));
 #ifdef SAMPLED
   set_light(index, sum);
 #else

@@ -185,6 +185,19 @@ TEST_F(SubsplatGatherTest, AHierarchyEndsInItsRootsAndItsLeaves) {
   EXPECT_LT(rmse(leaves.image, of("1e-4").image), 1e-5);
   const double some = rmse(leaves.image, of("0.1").image), none = rmse(leaves.image, roots.image);
   EXPECT_LT(some, none);
+  // What shows several surfaces is divided from any distance, and what does not may be summed.
+  const auto summed = [&](Gi gi, std::initializer_list<Setting> more) {
+    std::vector<Setting> all{{"patches.light", "summed"}, {"patches.depth", "2"}};
+    all.insert(all.end(), more.begin(), more.end());
+    screen::FrameOptions o = picture_options(gi, glm::ivec2(64), screen::LightPart::indirect);
+    o.bounces = 1;
+    for (const Setting& s : all) screen::set_parameter(o.settings, std::string(s.name) + "=" + s.value);
+    return render(context(), scene, scene.cameras.at(0), o).image;
+  };
+  const Image every = summed("multires", {{"patches.grid", "32"}});
+  const Image apart = summed("hierarchical", {{"patches.grid", "8"}, {"patches.edges", "on"}});
+  const Image together = summed("hierarchical", {{"patches.grid", "8"}});
+  EXPECT_LT(rmse(every, apart), 0.5 * rmse(every, together));
 }
 
 /// A rough mirror and a matt wall, lit from the floor.

@@ -128,6 +128,19 @@ TEST_F(LightPatchesTest, RangesHoldThoseOfTheirParts) {
   }
 }
 
+// Parts end with the map's own texels: 196 of 200 without the margin, 96 on a cube's face.
+TEST_F(LightPatchesTest, AreNoSmallerThanTexels) {
+  Scene scene = colourful_room();
+  LightPatchOptions o = options(Method::hierarchical, Light::summed);
+  o.depth = 6;
+  for (const auto& [light, deepest] : {std::pair(one_of_each()[0], 4), std::pair(one_of_each()[2], 3)}) {
+    scene.lights = {light};
+    const Made m = made(scene, o);
+    EXPECT_EQ(m.deepest, deepest);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(m.flux(deepest)[c] / m.flux(0)[c], 1.0, 1e-5);
+  }
+}
+
 // §4.2.3: every texel in one chosen patch, so that they reflect what all do; few where there is one wall, more at
 // edges.
 TEST_F(LightPatchesTest, RadiosityTakesEveryTexelOnce) {
