@@ -9,8 +9,8 @@
 layout(binding = WALK_CELLS_UNIT) uniform usamplerBuffer walk_cells;  // CELL_SIDES_SLOT's, as texels
 
 #define NO_SIDE 0xffffffffu
-// Cells off its start's plane within which a side of like normal is that very surface: a straight way that leaves a plane
-// does not come back to it, but to the staircase that the grid makes of it.
+// Cells off its start's plane within which a side of like normal is that very surface: a straight way that leaves a
+// plane does not come back to it, but to the staircase that the grid makes of it.
 #define OWN_SURFACE_CELLS 0.75
 
 struct FaceWalk {
@@ -44,8 +44,8 @@ FaceWalk begin_walk(vec3 point, vec3 normal, vec3 direction) {
   return w;
 }
 
-// What the way starts behind, or beside, it does not meet: within half a cell a point may be in a cell that is behind the
-// surface which it is in front of. (Axes are chosen by masks: software rasterizers index vectors slowly.)
+// What the way starts behind, or beside, it does not meet: within half a cell a point may be in a cell that is behind
+// the surface which it is in front of. (Axes are chosen by masks: software rasterizers index vectors slowly.)
 bool is_ahead(FaceWalk w, uint side, int cell, ivec3 along) {
   vec3 at = mix(vec3(cell_coord(grid, cell)) + 0.5, vec3(sides[side].depth), equal(along, ivec3(1)));
   vec3 normal = sides[side].normal;

@@ -1,5 +1,5 @@
-// Facets of GGX as a viewer sees them. Heitz 2018, "Sampling the GGX Distribution of Visible Normals". Written apart from
-// the reference's (reference/scattering.cpp).
+// Facets of GGX as a viewer sees them. Heitz 2018, "Sampling the GGX Distribution of Visible Normals". Written apart
+// from the reference's (reference/scattering.cpp).
 #ifndef VOLGI_VISIBLE_NORMALS_GLSL
 #define VOLGI_VISIBLE_NORMALS_GLSL
 #include "shared/constants.glsl"

@@ -1,6 +1,7 @@
 #version 450 core
-// Joins the subsets of a block along one axis, and then the other: any window as large as a block has each once. Pixels of
-// other surfaces, or that shine otherwise, do not count (Laine et al. 2007, "Incremental Instant Radiosity", section 4.2).
+// Joins the subsets of a block along one axis, and then the other: any window as large as a block has each once. Pixels
+// of other surfaces, or that shine otherwise, do not count (Laine et al. 2007, "Incremental Instant Radiosity", section
+// 4.2).
 #include "screen/base/gbuffer.glsl"
 #include "screen/bounces/glossy/slots.shared.h"
 #include "shared/group_sizes.shared.h"
@@ -25,7 +26,8 @@ void main() {
   if (any(greaterThanEqual(pixel, size))) return;
   vec4 d = texelFetch(direct_parts, pixel, 0), i = texelFetch(indirect_parts, pixel, 0);
   if (d.w > 0.0) {
-    vec3 position = texelFetch(position_map, pixel, 0).xyz, normal = octahedral_decode(texelFetch(normal_map, pixel, 0).xy);
+    vec3 position = texelFetch(position_map, pixel, 0).xyz;
+    vec3 normal = octahedral_decode(texelFetch(normal_map, pixel, 0).xy);
     vec4 mirror = texelFetch(mirror_map, pixel, 0);
     float roughness = texelFetch(diffuse_map, pixel, 0).a;
     for (int k = -interleave / 2; k < interleave - interleave / 2; ++k) {

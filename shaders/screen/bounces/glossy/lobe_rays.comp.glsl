@@ -1,9 +1,10 @@
 #version 450 core
-// What a pixel's mirror of facets reflects: rays through its lobe to the sides of the volume, or to the sky, and lights on
-// emissive surfaces, each seen as far as blocked faces let it. The two ways to find emission are weighed by how likely
-// each finds it (Veach and Guibas 1995, the balance heuristic): broad lobes find small lights by the lights, narrow ones
-// large lights by rays. Every pixel of a block takes one subset of both.
+// What a pixel's mirror of facets reflects: rays through its lobe to the sides of the volume, or to the sky, and lights
+// on emissive surfaces, each seen as far as blocked faces let it. The two ways to find emission are weighed by how
+// likely each finds it (Veach and Guibas 1995, the balance heuristic): broad lobes find small lights by the lights,
+// narrow ones large lights by rays. Every pixel of a block takes one subset of both.
 #include "screen/base/gbuffer.glsl"
+#include "screen/base/halton_pixel.glsl"
 #include "screen/base/sky_picture.glsl"
 #include "screen/base/visible_normals.glsl"
 #include "screen/bounces/glossy/slots.shared.h"
@@ -87,12 +88,6 @@ Seen look(Lobe s, vec3 d, float density) {
     left -= stopped;
   }
   return seen;
-}
-
-float radical_inverse_3(uint i) {
-  float sum = 0.0, digit = 1.0 / 3.0;
-  for (; i > 0u; i /= 3u, digit /= 3.0) sum += float(i % 3u) * digit;
-  return sum;
 }
 
 Seen by_rays(Lobe s, int subset) {

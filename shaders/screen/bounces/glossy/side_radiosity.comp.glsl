@@ -12,7 +12,9 @@ layout(local_size_x = LINEAR_GROUP) in;
 layout(std430, binding = GLOSSY_PUNCTUAL_FLUX_SLOT) readonly buffer Punctual { vec4 punctual_flux[]; };
 layout(std430, binding = GLOSSY_EMITTED_FLUX_SLOT) readonly buffer Emitted { vec4 emitted_flux[]; };
 layout(std430, binding = GLOSSY_DIRECT_IRRADIANCE_SLOT) readonly buffer DirectIrradiance { vec4 direct_irradiance[]; };
-layout(std430, binding = GLOSSY_INDIRECT_IRRADIANCE_SLOT) readonly buffer IndirectIrradiance { vec4 indirect_irradiance[]; };
+layout(std430, binding = GLOSSY_INDIRECT_IRRADIANCE_SLOT) readonly buffer IndirectIrradiance {
+  vec4 indirect_irradiance[];
+};
 layout(std430, binding = GLOSSY_RADIOSITY_SLOT) writeonly buffer Radiosity { vec4 radiosity[]; };
 uniform int has_punctual;  // 0: that buffer is another's
 uniform int has_emitted;

@@ -1,6 +1,6 @@
 #version 450 core
-// Irradiance of lights on emissive surfaces at the pixels of a list, and a bit for each of whether it is seen. A light that
-// all corners of the coarser level see, or none, is not asked again (Nichols 2010, section 5.3.3.2).
+// Irradiance of lights on emissive surfaces at the pixels of a list, and a bit for each of whether it is seen. A light
+// that all corners of the coarser level see, or none, is not asked again (Nichols 2010, section 5.3.3.2).
 // Set by the program: FIRST, the coarsest level; VOXELS or FACES, what hides lights
 #include "screen/base/coarse_pixels.glsl"
 #include "screen/gather/area/area_level.glsl"
@@ -66,7 +66,8 @@ void main() {
       VirtualLight light = area_lights[32 * word + k];
       vec3 w = light.position - position;
       float height = -dot(w, light.normal), along = dot(w, normal);
-      // Lights that look away or are black, and what looks away from them, are left out; a bit is what other surfaces do.
+      // Lights that look away or are black, and what looks away from them, are left out; a bit is what other surfaces
+      // do.
       bool faces = min(height, min(along, dot(w, geometric))) > 0.0 && light.flux != vec3(0.0);
       bool open = true;
       if (faces) {

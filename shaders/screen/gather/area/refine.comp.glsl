@@ -1,7 +1,7 @@
 #version 450 core
-// Which pixels of a level are gathered, and what the others have from the coarser one (Nichols 2010, section 5.3.4): those
-// at edges of geometry, where light varies between the corners, where the visibility of many lights does. FIRST: the coarsest
-// level, all of it.
+// Which pixels of a level are gathered, and what the others have from the coarser one (Nichols 2010, section 5.3.4):
+// those at edges of geometry, where light varies between the corners, where the visibility of many lights does. FIRST:
+// the coarsest level, all of it.
 #include "screen/gather/area/area_level.glsl"
 #include "screen/base/coarse_pixels.glsl"
 #include "shared/group_sizes.shared.h"

@@ -44,9 +44,9 @@ bool any_voxel(ivec2 texel, float from, float to) {
   return hit;
 }
 
-// Even samples along the way, each of all slices up to halfway to the next ones (Nichols 2010, section 5.3.3.1): as many as
-// it crosses texels or slices. Off both surfaces by the bias, along their normals and along the way: in a corner the other
-// wall's voxels are as near as the own.
+// Even samples along the way, each of all slices up to halfway to the next ones (Nichols 2010, section 5.3.3.1): as
+// many as it crosses texels or slices. Off both surfaces by the bias, along their normals and along the way: in a
+// corner the other wall's voxels are as near as the own.
 bool voxels_hide(vec3 from, vec3 normal, vec3 to, vec3 to_normal) {
   vec3 d = normalize(to - from);
   VoxelPlace a = voxel_place(from + (normal + 0.5 * d) * (voxel_bias * voxel_m(from)));

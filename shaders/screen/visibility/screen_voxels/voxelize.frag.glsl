@@ -19,7 +19,8 @@ void main() {
   float half_spread = 0.5 * (abs(dFdx(slice)) + abs(dFdy(slice)));
   if (!material_keeps(alpha, uvec3(gl_FragCoord.xy, object_id * 65599u + uint(gl_PrimitiveID)))) discard;
   int last_slice = 32 * imageSize(voxels).z - 1;
-  int first = clamp(int(floor(slice - half_spread)), 0, last_slice), last = clamp(int(floor(slice + half_spread)), 0, last_slice);
+  int first = clamp(int(floor(slice - half_spread)), 0, last_slice);
+  int last = clamp(int(floor(slice + half_spread)), 0, last_slice);
   for (int word = first >> 5; word <= last >> 5; ++word) {
     int low = max(first - 32 * word, 0), high = min(last - 32 * word, 31);
     uint bits = (0xffffffffu >> uint(31 - high)) & (0xffffffffu << uint(low));
