@@ -1,7 +1,7 @@
 #version 450 core
 // Irradiance of virtual lights at the fragments that the stencil has marked (Nichols 2010, §4.2.1.2), added to what
-// earlier blocks of lights have given. CLUSTERS: each seen as far as its cluster's map sees. TREE: by a traversal of the
-// tree of patches for each fragment (§4.2.4.1). NEGATIVE: instead, what negative lights take away.
+// earlier blocks of lights have given. CLUSTERS: each seen as far as its cluster's map sees. TREE: by a traversal of
+// the tree of patches for each fragment (§4.2.4.1). NEGATIVE: instead, what negative lights take away.
 #include "screen/base/virtual_lights_block.glsl"
 #include "screen/gather/subsplats/slots.shared.h"
 #include "screen/gather/subsplats/subsplat_light.glsl"

@@ -5,7 +5,10 @@
 
 layout(local_size_x = 1) in;
 layout(std430, binding = SUBSPLATS_IN_SLOT) readonly buffer In { WorkListHead in_head; };
-layout(std430, binding = SPLAT_ARGUMENTS_SLOT) buffer Arguments { uint vertices, instances, first_vertex, first_instance, all; };
+layout(std430, binding = SPLAT_ARGUMENTS_SLOT) buffer Arguments {
+  uint vertices, instances, first_vertex, first_instance;
+  uint all;
+};
 uniform int instance_count;
 uniform int counts;  // 1: these are new
 

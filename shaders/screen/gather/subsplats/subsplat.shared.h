@@ -1,6 +1,6 @@
 // Subsplats: squares of the picture that are one fragment each, of 2^level pixels on a side. Levels of a picture lie
-// beside one another in one texture, the flattened multiresolution buffer (Nichols 2010, §4.2.1.1): level 0 on the left,
-// the others on its right, one above the other. What has no level 0 holds that tower alone.
+// beside one another in one texture, the flattened multiresolution buffer (Nichols 2010, §4.2.1.1): level 0 on the
+// left, the others on its right, one above the other. What has no level 0 holds that tower alone.
 #ifndef VOLGI_SUBSPLAT_SHARED_H
 #define VOLGI_SUBSPLAT_SHARED_H
 #include "shared/base.shared.h"

@@ -6,8 +6,8 @@
 #include "shared/disk_to_point.shared.h"
 #include "shared/virtual_light.shared.h"
 
-// Over its flux [m^-2]. Nichols 2010, eq. 4.1, the disk-to-point form as printed. FORM_POINT: eq. 3.2, whose distance is kept from getting
-// smaller than the disk; FORM_EXACT: shared/disk_to_point.shared.h.
+// Over its flux [m^-2]. Nichols 2010, eq. 4.1, the disk-to-point form as printed. FORM_POINT: eq. 3.2, whose distance
+// is kept from getting smaller than the disk; FORM_EXACT: shared/disk_to_point.shared.h.
 float light_form(vec3 position, vec3 normal, float area_m2, Receiver at) {
   vec3 w = position - at.position;
   float squared = dot(w, w), along = dot(w, at.normal), height = -dot(w, normal);

@@ -1,9 +1,9 @@
 #version 450 core
 // One level of the upsampling, coarsest to finest (Nichols 2010, §3.2.5): a texel that was rendered, or that a coarser
 // one gives data to, is interpolated between the 3 x 3 around it that hold data; nothing comes from empty ones or goes
-// there. What a coarser texel gives all four of its parts, the tent over 3 x 3 interpolates linearly. KEEP_RENDERED: what
-// was rendered stays as it is, so that no light crosses an edge between pixels. TO_PIXELS: the last level, which ends in
-// radiance.
+// there. What a coarser texel gives all four of its parts, the tent over 3 x 3 interpolates linearly. KEEP_RENDERED:
+// what was rendered stays as it is, so that no light crosses an edge between pixels. TO_PIXELS: the last level, which
+// ends in radiance.
 #include "screen/base/gbuffer.glsl"
 #include "screen/gather/subsplats/slots.shared.h"
 #include "screen/gather/subsplats/subsplat.shared.h"

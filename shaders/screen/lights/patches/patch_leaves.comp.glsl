@@ -1,6 +1,6 @@
 #version 450 core
-// The finest patches of one light, from all their texels. SAMPLED: their light is that of one (light_patches.glsl); else
-// the sum over all.
+// The finest patches of one light, from all their texels. SAMPLED: their light is that of one (light_patches.glsl);
+// else the sum over all.
 #include "screen/lights/patches/light_patches.glsl"
 #include "shared/group_sizes.shared.h"
 
