@@ -32,7 +32,7 @@ void main() {
     vec3 irradiance = perpendicular_irradiance(rsm_lights[light].light, position, to_light);
     float cosine = dot(side.normal, to_light);
     if (cosine > 0.0 && irradiance != vec3(0.0))
-      sum += irradiance * (0.25 * cosine * rsm_visibility(light, position, side.normal));
+      sum += irradiance * (0.25 * cosine * rsm_visibility(light, RsmReceiver(position, side.normal, side.normal)));
   }
   radiosity[s] += vec4(side.albedo * sum, 0.0);
 }
