@@ -26,7 +26,8 @@ int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 n
   const float reach = DEPOSIT_REACH * shared::staircase_factor(normal);
   if (!shared::cell_inside(voxels.grid(), glm::ivec3(glm::floor(point + reach * normal)))) return -1;
   const glm::ivec3 seeing = seeing_cell(voxels, point, normal);
-  if (!shared::cell_inside(voxels.grid(), seeing)) return -1;
+  // What sees the point is outside: its own surface goes on in the grid, or nothing does.
+  const bool at_rim = !shared::cell_inside(voxels.grid(), seeing);
   const glm::ivec3 centre(glm::floor(point));
   const glm::ivec3 first = glm::max(centre - 2, 0);
   const glm::ivec3 last = glm::min(centre + 2, voxels.grid().cells - 1);
@@ -41,9 +42,11 @@ int any_side_near(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 n
         const glm::uvec2 own = voxels.cell_sides(c);
         const int count = int(shared::count_bits(own.y & 63u));
         if (count == 0) continue;
-        const bool seen = !hidden_from_cell(voxels, c, point, normal) && open_way(voxels, seeing, c);
+        const bool hidden = hidden_from_cell(voxels, c, point, normal);
+        const bool seen = !hidden && open_way(voxels, seeing, c);
         for (int side = int(own.x); side < int(own.x) + count; ++side) {
           const float cosine = glm::dot(voxels.sides()[size_t(side)].normal, normal);
+          if (at_rim && (hidden || cosine < SIMILAR_NORMAL_COSINE)) continue;
           const float score = cosine - glm::length(to_centre) + (in_front && cosine > 0.0f ? DEPOSIT_FIRST : 0.0f) +
                               (seen ? DEPOSIT_SEEN : 0.0f);
           if (best >= 0 && score <= best_score) continue;

@@ -93,8 +93,14 @@ void SideColumns::spread(int kind) {
   around_[size_t(kind)] = with_neighbours(with_neighbours(columns_[size_t(kind)], column), row);
 }
 
-SideSearch::SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both)
-    : voxels_(voxels), columns_(columns), normals_{normal, -normal}, fronts_{front, 1 - front}, ways_(both ? 2 : 1) {
+SideSearch::SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both,
+                       bool at_rim)
+    : voxels_(voxels),
+      columns_(columns),
+      normals_{normal, -normal},
+      fronts_{front, 1 - front},
+      ways_(both ? 2 : 1),
+      at_rim_(at_rim) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!(std::abs(normal[axis]) >= kMinShare)) continue;
     prepare(axis, columns);
@@ -160,7 +166,7 @@ inline SideSearch::Place SideSearch::place_of(const glm::vec3& point, const glm:
 
 /// Whether a cell and the one that sees the point are on one side of what is around.
 inline bool SideSearch::is_open_to(const Place& place, const glm::ivec3& cell, const glm::vec3& normal) const {
-  return !hidden_from_cell(voxels_, cell, place.point, normal) && open_way(voxels_, place.seeing, cell);
+  return !hidden_from_cell(voxels_, cell, place.point, normal) && (at_rim_ || open_way(voxels_, place.seeing, cell));
 }
 
 /// Index of the side of a column's cell, which must have it.
@@ -190,7 +196,7 @@ inline bool SideSearch::look(const Column& column, std::uint32_t three, const Pl
     if (front >= 0 && (side.front != front || behind_side(side, normal, axis, column.depth))) continue;
     const float cosine = glm::dot(side.normal, normal);
     if (!(cosine >= 0.0f)) continue;
-    if (found.facing < 0) {
+    if (found.facing < 0 && !at_rim_) {
       found.facing_varies |= !all_near;
       if (near) found.facing = int(index);
     }
@@ -374,8 +380,9 @@ SideSearch::Answer SideSearch::at(const glm::vec3& point, const glm::ivec3& cell
 
 SidesOfPoint sides_of_point(const VoxelGrid& voxels, glm::vec3 world_position, glm::vec3 normal, int front) {
   const glm::vec3 point = shared::cell_from_world(voxels.grid(), world_position);
-  const glm::ivec3 cell = front < 0 ? seeing_cell(voxels, point, normal) : glm::ivec3(glm::floor(point));
-  return SideSearch(voxels, nullptr, normal, front, false).at(point, cell).along;
+  const glm::ivec3 own(glm::floor(point)), seeing = front < 0 ? seeing_cell(voxels, point, normal) : own;
+  const bool at_rim = front < 0 && !shared::cell_inside(voxels.grid(), seeing);
+  return SideSearch(voxels, nullptr, normal, front, false, at_rim).at(point, at_rim ? own : seeing).along;
 }
 
 }  // namespace volgi

@@ -76,7 +76,10 @@ class SideSearch {
   /// @param columns  of the same voxels: saves time where there are many searches; may be null. Needs front 0 or 1, and
   ///                 cells not farther outside the grid than one.
   /// @param front    of the sides that `normal` asks for; with `both`, sides with 1 - front are searched against it.
-  SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both);
+  /// @param at_rim   with front -1: what sees the points is outside of the grid, and only their own surface stands for
+  /// them.
+  SideSearch(const VoxelGrid& voxels, const SideColumns* columns, glm::vec3 normal, int front, bool both,
+             bool at_rim = false);
 
   struct Answer {
     SidesOfPoint along, against;  // the normal
@@ -148,6 +151,7 @@ class SideSearch {
   glm::vec3 normals_[2];
   int fronts_[2];
   int ways_;
+  bool at_rim_;
   int searched_axes_ = 0;    // bits
   glm::vec3 weights_{0.0f};  // where all of them find a side
   Axis axes_[3];

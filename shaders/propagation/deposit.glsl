@@ -9,7 +9,8 @@
 int find_any_side(vec3 point, vec3 normal) {
   float reach = DEPOSIT_REACH * staircase_factor(normal);
   ivec3 centre = ivec3(floor(point)), own = seeing_cell(point, normal);
-  if (!cell_inside(grid, ivec3(floor(point + reach * normal))) || !cell_inside(grid, own)) return -1;
+  if (!cell_inside(grid, ivec3(floor(point + reach * normal)))) return -1;
+  bool at_rim = !cell_inside(grid, own);  // what sees the point is outside: its own surface goes on in the grid, or nothing does
   int best = -1;
   float best_score = -1e30;
   for (int k = 0; k < 125; ++k) {
@@ -20,11 +21,13 @@ int find_any_side(vec3 point, vec3 normal) {
     bool in_front = dot(to_centre, normal) > -reach;
     uvec2 own_sides = cell_sides[cell_index(grid, cell)];
     if ((own_sides.y & 63u) == 0u) continue;
-    bool seen = !hidden_from_cell(cell, own_sides, point, normal) && open_way(own, cell);
+    bool hidden = hidden_from_cell(cell, own_sides, point, normal);
+    bool seen = !hidden && open_way(own, cell);
     for (int face = 0; face < 6; ++face) {
       if (!has_side(own_sides, face)) continue;
       int index = int(side_index(own_sides, face));
       float cosine = dot(sides[index].normal, normal);
+      if (at_rim && (hidden || cosine < SIMILAR_NORMAL_COSINE)) continue;
       float score = cosine - length(to_centre) + (in_front && cosine > 0.0 ? DEPOSIT_FIRST : 0.0) + (seen ? DEPOSIT_SEEN : 0.0);
       if (score > best_score) {
         best_score = score;

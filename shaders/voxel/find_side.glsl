@@ -28,7 +28,8 @@ bool hidden_from_cell(ivec3 cell, uvec2 own_sides, vec3 point, vec3 normal) {
 // front: 1 or 0 for sides that show a triangle's front or back only; -1 for any, of cells that see the point: a cell whose centre
 // is inside of a closed box has nothing of the light on the ground beside it. place_matters is set where another point
 // of the plane in the same cell may get another answer.
-ivec2 find_side(vec3 point, vec3 normal, int axis, int front, ivec3 own, inout bool place_matters) {
+ivec2 find_side(vec3 point, vec3 normal, int axis, int front, ivec3 own, bool at_rim,
+                inout bool place_matters) {
   int b = axis_b(axis);
   int c = axis_c(axis);
   int up = normal[axis] > 0.0 ? 1 : 0;
@@ -53,10 +54,10 @@ ivec2 find_side(vec3 point, vec3 normal, int axis, int front, ivec3 own, inout b
     if (!has_side(own_sides, face)) continue;
     int index = int(side_index(own_sides, face));
     if (front >= 0 && (sides[index].front != front || behind_side(sides[index], normal, axis, depth))) continue;
-    if (front < 0 && (hidden_from_cell(cell, own_sides, point, normal) || !open_way(own, cell))) continue;
+    if (front < 0 && (hidden_from_cell(cell, own_sides, point, normal) || !(at_rim || open_way(own, cell)))) continue;
     float cosine = dot(sides[index].normal, normal);
     if (cosine >= SIMILAR_NORMAL_COSINE) found.x = index;
-    if (cosine >= 0.0 && found.y < 0) found.y = index;
+    if (cosine >= 0.0 && found.y < 0 && !at_rim) found.y = index;
   }
   return found;
 }
@@ -69,9 +70,12 @@ void sides_of_cell_point(vec3 point, vec3 normal, int front, out ivec3 targets, 
   ivec3 alike = ivec3(-1);
   ivec3 facing = ivec3(-1);
   ivec3 own = front < 0 ? seeing_cell(point, normal) : ivec3(floor(point));
+  // What sees the point is outside: only its own surface can stand for it.
+  bool at_rim = front < 0 && !cell_inside(grid, own);
+  if (at_rim) own = ivec3(floor(point));
   for (int axis = 0; axis < 3; ++axis) {
     if (abs(normal[axis]) < 1e-3) continue;
-    ivec2 found = find_side(point, normal, axis, front, own, place_matters);
+    ivec2 found = find_side(point, normal, axis, front, own, at_rim, place_matters);
     alike[axis] = found.x;
     facing[axis] = found.y;
   }

@@ -43,6 +43,7 @@ inline VoxelGrid rooms_in_a_row(int rooms, int size, glm::vec3 rho) {
       side.area_m2 = side.face_m2 = grid.cell_size_m * grid.cell_size_m;
       side.cell = i;
       side.face = face;
+      side.depth = float(shared::cell_coord(grid, side.cell)[face >> 1] + (face & 1));
       sides.push_back(side);
     }
   }

@@ -92,7 +92,7 @@ TEST(SideFluxCpu, TiltedSurfacesSplit) {
     side.area_m2 = side.face_m2 = 1.0f / 16.0f;
     side.cell = shared::cell_index(grid, {4, 4, 4});
     side.face = face;
-    side.depth = 4.0f;
+    side.depth = face == 0 ? 3.12f : 3.81f;  // of the sample's plane, on the lines through the cell's centre
     sides.push_back(side);
   }
   const VoxelGrid voxels(grid, sides);

@@ -40,7 +40,9 @@ TEST(SidesOfPoint, FindsWhatAWallShows) {
 SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int front) {
   const int order[9] = {4, 0, 1, 2, 3, 5, 6, 7, 8};
   SidesOfPoint out;
-  const glm::ivec3 seeing = front < 0 ? seeing_cell(v, point, n) : glm::ivec3(glm::floor(point));
+  glm::ivec3 seeing = front < 0 ? seeing_cell(v, point, n) : glm::ivec3(glm::floor(point));
+  const bool at_rim = front < 0 && !shared::cell_inside(v.grid(), seeing);
+  if (at_rim) seeing = glm::ivec3(glm::floor(point));
   for (float min_cosine : {0.70710678f, 0.0f}) {
     for (int a = 0; a < 3; ++a) {
       const int b = shared::axis_b(a), c = shared::axis_c(a);
@@ -58,11 +60,11 @@ SidesOfPoint plain_search(const VoxelGrid& v, glm::vec3 point, glm::vec3 n, int 
         if (!shared::cell_inside(v.grid(), cell)) continue;
         const Side* side = side_of(v, cell, shared::face_of(a, !(n[a] > 0.0f)));
         if (side == nullptr || (front >= 0 && side->front != front)) continue;
-        if (front < 0 && (hidden_from_cell(v, cell, point, n) || !open_way(v, seeing, cell))) continue;
+        if (front < 0 && (hidden_from_cell(v, cell, point, n) || !(at_rim || open_way(v, seeing, cell)))) continue;
         const float cosine = glm::dot(side->normal, n), bounded = glm::clamp(cosine, 0.1f, 1.0f);
         const float behind = (side->depth - depth) * side->normal[a];
         if (front >= 0 && behind > 0.02f + 0.75f * std::sqrt(1.0f - bounded * bounded) / bounded) continue;
-        if (cosine >= min_cosine) out.sides[a] = int(side - v.sides().data());
+        if (cosine >= min_cosine && !(at_rim && min_cosine == 0.0f)) out.sides[a] = int(side - v.sides().data());
       }
       out.weights[a] = out.sides[a] >= 0 ? std::abs(n[a]) : 0.0f;
     }
