@@ -149,7 +149,7 @@ void stage(Viewer& v, Text text) {
   const auto [name, state] = split(text);
   change(v, "stage " + name, [&](Settings& s) {
     auto& without = s.frame.without;
-    if (const std::string why = idle_stage(s.frame, name); !why.empty()) misused(why);
+    if (const std::string why = idle_stage(s.frame, v.session.document().scene(), name); !why.empty()) misused(why);
     const bool off = std::find(without.begin(), without.end(), name) != without.end();
     if (state == "on" || (state == "toggle" && off)) {
       std::erase(without, name);

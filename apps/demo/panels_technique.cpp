@@ -8,6 +8,7 @@
 #include "apps/demo/presets.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
+#include "core/surface.h"
 #include "screen/frame/plan.h"
 #include "screen/frame/registry.h"
 
@@ -30,7 +31,8 @@ void tooltip(const std::string& text) {
 std::string refusal(const Session& session, screen::FrameOptions options) {
   options.size = glm::max(session.size(), glm::ivec2(1));
   try {
-    screen::plan_picture(screen::recipe_of(options), options, screen::paths_in(session.document().scene()));
+    screen::plan_picture(screen::recipe_of(options), options, screen::paths_in(session.document().scene()),
+                         shines(session.document().scene()));
   } catch (const Error& error) {
     return error.what();
   }
@@ -90,7 +92,7 @@ void Panels::draw_stage(const screen::StageType& stage) {
   } else {
     other.without.emplace_back(stage.name);
   }
-  std::string why = idle_stage(viewer_.session.settings().frame, stage.name);
+  std::string why = idle_stage(viewer_.session.settings().frame, viewer_.session.document().scene(), stage.name);
   if (why.empty()) why = refusal(viewer_.session, other);
   bool on = !off;
   if (!why.empty()) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, ImGui::GetStyle().Alpha * GREYED);

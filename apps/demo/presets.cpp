@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/surface.h"
 #include "propagation/volume_options.h"
+#include "screen/frame/plan.h"
 #include "screen/frame/registry.h"
 
 namespace volgi::demo {
@@ -46,13 +48,31 @@ void take_recipe(const std::string& name, screen::FrameOptions& options) {
   screen::apply_recipe(name, options);
 }
 
-std::string idle_stage(const screen::FrameOptions& options, const std::string& name) {
+namespace {
+
+/// Of a picture of the scene; all of the recipe where there is none.
+bool has_part(const screen::FrameOptions& options, const Scene& scene, const screen::StageType* type) {
+  try {
+    const screen::Plan plan =
+        screen::plan_picture(screen::recipe_of(options), options, screen::paths_in(scene), shines(scene));
+    return std::any_of(plan.steps.begin(), plan.steps.end(), [&](const auto& step) { return step.type == type; });
+  } catch (const Error&) {
+    return true;
+  }
+}
+
+}  // namespace
+
+std::string idle_stage(const screen::FrameOptions& options, const Scene& scene, const std::string& name) {
   const screen::Recipe recipe = screen::find_recipe(screen::recipe_of(options).name);
   for (const screen::StageType* type : recipe.stages) {
     if (name != type->name) continue;
     const bool is_off = std::find(options.without.begin(), options.without.end(), name) != options.without.end();
-    if (!is_off && !type->role(options).active)
+    if (is_off) continue;
+    if (!type->role(options).active)
       return fmt::format("stage {}: nothing to do in --gi {} with these options", name, recipe.name);
+    if (!has_part(options, scene, type))
+      return fmt::format("stage {}: nothing to do in --gi {} in this scene", name, recipe.name);
   }
   return {};
 }

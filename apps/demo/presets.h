@@ -24,9 +24,10 @@ void apply_preset(const std::string& name, Settings& settings);
 /// otherwise since. @throws Error(usage) naming those that there are.
 void take_recipe(const std::string& name, screen::FrameOptions& options);
 
-/// Why a stage of the recipe has nothing to do with these options, so that a switch for it would change nothing, as the
-/// interleaved gather where another is chosen; empty where it has, or where there is no such stage.
-std::string idle_stage(const screen::FrameOptions& options, const std::string& name);
+/// Why a stage of the recipe has nothing to do with these options in this scene, so that a switch for it would change
+/// nothing, as the interleaved gather where another is chosen, or mirrors where nothing shines; empty where it has, or
+/// where there is no such stage.
+std::string idle_stage(const screen::FrameOptions& options, const Scene& scene, const std::string& name);
 
 /// All parameters, the volume's scheme and its grid to what the recipe has.
 void reset_technique(Settings& settings);

@@ -10,6 +10,7 @@
 #include "apps/demo/camera_control.h"
 #include "apps/demo/render_command.h"
 #include "core/error.h"
+#include "core/surface.h"
 #include "propagation/volume_options.h"
 #include "screen/frame/registry.h"
 
@@ -117,7 +118,8 @@ bool Session::change(const std::string& what, const Settings& settings) {
     view();
     const screen::FrameOptions options = frame_options(glm::max(asked_size_, glm::ivec2(1)));
     const screen::Recipe recipe = screen::recipe_of(options);
-    if (document_) screen::plan_picture(recipe, options, screen::paths_in(document_->scene()));
+    if (document_)
+      screen::plan_picture(recipe, options, screen::paths_in(document_->scene()), shines(document_->scene()));
   } catch (const Error& error) {
     settings_ = before;
     say(error.what(), true);

@@ -67,8 +67,9 @@ Carriers carriers_of(LightPath path, const std::vector<Candidate>& stages) {
   return c;
 }
 
-/// Each light path exactly once.
-void check_paths(const Recipe& recipe, const std::vector<Candidate>& stages, LightPaths wanted) {
+/// Each light path exactly once. @param cut  stages were left out: of what they carry the mirror's part may
+/// be there alone.
+void check_paths(const Recipe& recipe, const std::vector<Candidate>& stages, LightPaths wanted, bool cut) {
   for (int k = 0; k < LIGHT_PATH_COUNT; ++k) {
     const LightPath path{std::uint8_t(k)};
     const Carriers c = carriers_of(path, stages);
@@ -78,7 +79,7 @@ void check_paths(const Recipe& recipe, const std::vector<Candidate>& stages, Lig
     if (near != far)
       refuse(recipe, fmt::format("{}: only the {} part is there", in_words(path), near > far ? "near" : "far"));
     const bool carried = whole + near > 0;
-    if (!carried && !c.mirror.empty())
+    if (!carried && !c.mirror.empty() && !cut)
       refuse(recipe, fmt::format("{}: only the mirror's part is there, of stage {}", in_words(path), c.mirror[0]));
     if (carried && !(recipe.claims | BASE_PATHS).contains(path))
       refuse(recipe, fmt::format("{}: stage {} adds it, which the recipe does not claim", in_words(path),
@@ -137,7 +138,7 @@ Plan plan_picture(const Recipe& recipe, const FrameOptions& options, LightPaths 
   plan.wanted = (asked & (recipe.claims | BASE_PATHS)) - lacks;
   plan.missing = asked - plan.wanted;
   check_needs(recipe, stages);
-  check_paths(recipe, stages, plan.wanted);
+  check_paths(recipe, stages, plan.wanted, !options.without.empty());
   keep_needed(stages, plan);
   return plan;
 }

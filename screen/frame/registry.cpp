@@ -161,7 +161,9 @@ Recipe recipe_of(const FrameOptions& options) {
   }
   LightPaths carried;
   for (const StageType* stage : recipe.stages) {
-    for (const StageRole::Light& light : stage->role(options).adds) carried = carried | light.paths;
+    for (const StageRole::Light& light : stage->role(options).adds) {
+      if (light.share != LightShare::mirror) carried = carried | light.paths;
+    }
   }
   recipe.claims = recipe.claims & carried;
   return recipe;
