@@ -45,8 +45,8 @@ SHARED_FUNCTION float height_over_side(Side side, ivec3 cell, vec3 point) {
   on_surface[side.face >> 1] = side.depth;
   return dot(point - on_surface, side.normal);
 }
-// Whether a side hides a point of a surface of that normal from the cell that sees the side: the point lies behind it, by
-// more than two layers that count as one; where normals are alike also by more than the two can part within the half
+// Whether a side hides a point of a surface of that normal from the cell that sees the side: the point lies behind it,
+// by more than two layers that count as one; where normals are alike also by more than the two can part within the half
 // diagonal of a face when they are one bent surface. Sides that let light pass do not hide.
 #define HIDDEN_DEPTH 0.02f
 #define HIDDEN_BEND 0.75f
@@ -65,7 +65,7 @@ SHARED_FUNCTION bool side_hides(Side side, ivec3 cell, vec3 point, vec3 normal) 
 // so that a wall on the grid's rim looks out of the grid and a cell behind it does not reach in front, despite
 // rounding.
 #define DEPOSIT_REACH 0.49f
-#define DEPOSIT_FIRST 8.0f   // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
+#define DEPOSIT_FIRST 8.0f  // more than scores differ by: two of cosines, and 2.5 sqrt(3) cells
 #define DEPOSIT_SEEN 16.0f  // before these: cells from which nothing hides the point
 
 SHARED_FUNCTION float staircase_factor(vec3 normal) { return abs(normal.x) + abs(normal.y) + abs(normal.z); }

@@ -6,7 +6,7 @@
 #include "shared/base.shared.h"
 SHARED_BEGIN
 
-#define MAX_SUBSPLAT_LEVEL 12  // of squares of 4096 pixels
+#define MAX_SUBSPLAT_LEVEL 12   // of squares of 4096 pixels
 #define ALL_LIGHTS 0xffffffffu  // that a subsplat is for: once a frame, and not once a light
 
 // Texels of a level.
@@ -55,9 +55,7 @@ SHARED_FUNCTION Subsplat subsplat_at(ivec2 size, int last, ivec2 place) {
 }
 
 // A level and a texel of it in one number, and back. Pictures have at most 16384 pixels on a side.
-SHARED_FUNCTION uint pack_subsplat(Subsplat s) {
-  return uint(s.level) << 28 | uint(s.texel.y) << 14 | uint(s.texel.x);
-}
+SHARED_FUNCTION uint pack_subsplat(Subsplat s) { return uint(s.level) << 28 | uint(s.texel.y) << 14 | uint(s.texel.x); }
 SHARED_FUNCTION Subsplat unpack_subsplat(uint packed_subsplat) {
   Subsplat s;
   s.level = int(packed_subsplat >> 28);

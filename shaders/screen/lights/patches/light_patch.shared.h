@@ -21,7 +21,7 @@ struct LightPatch {
 
 // std430, 32 bytes: min-max mipmaps of the map, of it and one texel around it.
 struct PatchRange {
-  vec3 least;  // of each component of the normal
+  vec3 least;     // of each component of the normal
   float nearest;  // depth [m]; PATCH_BACKGROUND: nothing
   vec3 most;
   float farthest;  // PATCH_BACKGROUND: some of it is background
