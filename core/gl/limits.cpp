@@ -16,7 +16,7 @@ std::span<const Limit> needed_limits() {
       VOLGI_LIMIT(GL_MAX_COMPUTE_UNIFORM_BLOCKS, 2, "screen/gather/interleaved/area_light_gather"),
       VOLGI_LIMIT(GL_MAX_COMPUTE_IMAGE_UNIFORMS, 5, "screen/base/smooth_pixels"),
       VOLGI_LIMIT(GL_MAX_IMAGE_UNITS, 5, "screen/base/smooth_pixels"),
-      VOLGI_LIMIT(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, 15, "screen/lights/rsm/virtual_lights"),
+      VOLGI_LIMIT(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS, 16, "screen/bounces/glossy/side_punctual"),
       VOLGI_LIMIT(GL_MAX_TEXTURE_IMAGE_UNITS, 16, "screen/base/compose"),
       VOLGI_LIMIT(GL_MAX_TEXTURE_BUFFER_SIZE, 1 << 22, "screen/gather/multires/light_cut"),
       VOLGI_LIMIT(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE, 32768, "propagation/sweep"),

@@ -3,6 +3,7 @@
 #define VOLGI_SIDE_RAY_GLSL
 #include "voxel/cell_sides.glsl"
 #include "voxel/grid_block.glsl"
+#include "voxel/seeing_cells.glsl"
 #include "voxel/sides.glsl"
 
 // Cells: what rounded vertices move a surface by.
@@ -37,30 +38,10 @@ float side_distance(Side side, ivec3 cell, vec3 entry, vec3 way, int exit_face, 
   return distance <= cell_length ? distance : FAR_AWAY;
 }
 
-// The cell that sees a point: the one in front of its surface or, where another surface stands between the point and that
-// cell's centre, the one across that surface's face.
-ivec3 cell_that_sees(vec3 point, vec3 normal) {
-  ivec3 cell = ivec3(floor(point + (0.5 * staircase_factor(normal) + 0.02) * normal));
-  for (int step = 0; step < 2 && cell_inside(grid, cell); ++step) {
-    uvec2 faces = cell_sides[cell_index(grid, cell)];
-    int across = -1;
-    for (int face = 0; face < 6 && (faces.y & 63u) != 0u; ++face) {
-      if (!has_side(faces, face)) continue;
-      Side side = sides[side_index(faces, face)];
-      // Sides of like normals may be the point's own surface, bent.
-      float slack = dot(side.normal, normal) >= SIMILAR_NORMAL_COSINE ? 0.1 : 0.02;
-      if (dot(point - point_of(side, cell), side.normal) < -slack) across = face;
-    }
-    if (across < 0) break;
-    cell += face_step(across);
-  }
-  return cell;
-}
-
 // @param point  of a surface with that normal, cell units. @param way  unit, in front of the surface. @param seed  of the ray: what
 // partly covered sides let pass. @param met_at  on its plane, cell units. @return the side's index; -1: the ray leaves the grid.
 int side_met(vec3 point, vec3 normal, vec3 way, uint seed, out vec3 met_at) {
-  ivec3 cell = cell_that_sees(point, normal);
+  ivec3 cell = seeing_cell(point, normal);
   vec3 entry = point;
   int most = grid.cells.x + grid.cells.y + grid.cells.z;
   for (int step = 0; step < most && cell_inside(grid, cell); ++step) {

@@ -214,7 +214,7 @@ TEST_P(BlackSurface, ReturnsNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemes, BlackSurface,
-                         testing::Values(BlackCase{Scheme::ordinates, 24, 4.0f, 0.07},
+                         testing::Values(BlackCase{Scheme::ordinates, 24, 4.0f, 0.078},
                                          BlackCase{Scheme::ordinates, 24, 0.5f, 0.115},
                                          BlackCase{Scheme::conservative, 16, 4.0f, 0.14},
                                          BlackCase{Scheme::conservative, 16, 0.5f, 0.75}),

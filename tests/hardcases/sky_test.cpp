@@ -185,7 +185,7 @@ TEST_F(SkyPictures, ARoomOnOpenGroundKeepsItsLight) {
   lamp.intensity = glm::vec3(6.0f);
   scene.lights = {lamp};
   screen::FrameOptions o = picture_options("hybrid", {64, 64}, screen::LightPart::indirect);
-  o.of<VolumeOptions>().grid_cells = 128;
+  o.of<VolumeOptions>().grid_cells = 256;
   const auto relative =
       error_of(render(context(), scene, scene.cameras[0], o).image, scene, PathTracerOptions::Light::indirect);
   RecordProperty("closed", std::to_string(relative.ratio) + " / " + std::to_string(relative.rmse_pct));

@@ -18,6 +18,8 @@ uniform int first_sender;
 uniform int ray_count;
 uniform uint first_ray;
 
+#define ALONG_AXES 1.02  // staircase factor: within a degree
+
 struct Sender {
   vec3 position, normal, flux;
 };
@@ -45,7 +47,11 @@ void main() {
   if (sender.flux == vec3(0.0)) return;
   uint n = first_ray + uint(j);
   vec3 met_at;
-  int side = side_met(cell_from_world(grid, sender.position), sender.normal, cosine_direction(sender.normal, recurrence(n)), n, met_at);
+  int side = side_met(cell_from_world(grid, sender.position), sender.normal,
+                      cosine_direction(sender.normal, recurrence(n)), n, met_at);
   if (side < 0) return;
-  deposit(world_from_cell(grid, met_at), sides[side].normal, sender.flux / float(rays_per_sender) * sides[side].albedo);
+  vec3 flux = sender.flux / float(rays_per_sender) * sides[side].albedo;
+  // A tilted surface is a staircase, whose sides around the point share its light; one along the axes is what was met.
+  if (staircase_factor(sides[side].normal) > ALONG_AXES) deposit(world_from_cell(grid, met_at), sides[side].normal, flux);
+  else add_flux(side, flux);
 }
