@@ -11,6 +11,7 @@ namespace {
 
 constexpr float OPEN_COVERAGE = 0.5f;
 constexpr int SMALLEST_PLACE = 50;     // as a part of all cells
+constexpr size_t FEWEST_POINTS = 100;  // as a part of all
 constexpr double STAYS_JOINED = 0.97;  // of a place
 constexpr size_t LOOKED_AT_MORE = 2;   // cells of the finest grid that is looked at, over those of the answer
 
@@ -111,21 +112,35 @@ bool stay_joined(const Scene& scene, const Grid& fine, const std::vector<int>& p
   });
 }
 
+/// Places that no light comes from count as none: bodies that stand on a floor.
+void keep_lit(const Grid& grid, std::span<const LitPoint> lit, std::vector<int>& places) {
+  if (lit.empty()) return;
+  std::map<int, size_t> points;
+  for (const LitPoint& p : lit) {
+    const glm::ivec3 cell(glm::floor(shared::cell_from_world(grid, p.position) + 0.6f * p.normal));
+    if (shared::cell_inside(grid, cell)) ++points[places[size_t(shared::cell_index(grid, cell))]];
+  }
+  for (int& place : places) {
+    if (points[place] * FEWEST_POINTS < lit.size()) place = -1;
+  }
+}
+
 }  // namespace
 
 std::vector<int> places_of(const VoxelGrid& voxels) { return Places(voxels).take(); }
 
-int cells_that_keep_passages(const Scene& scene, int cells, size_t most_cells, const std::optional<GridBox>& box) {
+int cells_that_keep_passages(const Scene& scene, int cells, size_t most_cells, std::span<const LitPoint> lit,
+                             const std::optional<GridBox>& box) {
   const auto grid_of = [&](int n) { return make_grid(scene, n, glm::vec3(0.0f), box); };
   if (sizes_of(places_of(voxelize_cpu(scene, grid_of(std::max(cells / 2, 1))))).size() <= 1) return cells;
   const Grid fine = grid_of(2 * cells);
   if (cell_count(fine) > LOOKED_AT_MORE * most_cells) return cells;
-  const std::vector<int> places = places_of(voxelize_cpu(scene, fine));
+  std::vector<int> places = places_of(voxelize_cpu(scene, fine));
+  keep_lit(fine, lit, places);
   int needed = 8 * cells / 3;
-  for (const int factor : {4, 3, 2}) {
-    if (!stay_joined(scene, fine, places, factor)) continue;
+  for (const int factor : {2, 3, 4}) {
+    if (!stay_joined(scene, fine, places, factor)) break;
     needed = 4 * cells / factor;
-    break;
   }
   while (needed > cells && cell_count(grid_of(needed)) > most_cells) --needed;
   return needed;

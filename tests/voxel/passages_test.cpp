@@ -43,12 +43,15 @@ TEST(Passages, TheInsideOfABodyIsNoPlace) {
 }
 
 // A gap of 0.08 m: in cells of 0.25 and 0.19 m most of a face beside it is wall, in cells of 0.125 m a third. Those
-// that are half as large see it well.
+// that are half as large see it well. Places that no light comes from are nobody's.
 TEST(Passages, CellsFollowTheGap) {
   const Scene wide = rooms(3, 1.0f), narrow = rooms(3, 0.08f), closed = rooms(3, 0.0f);
   EXPECT_EQ(cells_that_keep_passages(wide, 48, MANY), 48);
   EXPECT_EQ(cells_that_keep_passages(closed, 48, MANY), 48);
   EXPECT_EQ(cells_that_keep_passages(narrow, 48, MANY), 96);
+  const LitPoint in_the_first[] = {{{1.0f, 0.0f, 1.0f}, {0.0f, 1.0f, 0.0f}}}, outside[] = {{{-9, 0, 0}, {0, 1, 0}}};
+  EXPECT_EQ(cells_that_keep_passages(narrow, 48, MANY, in_the_first), 96);
+  EXPECT_EQ(cells_that_keep_passages(narrow, 48, MANY, outside), 48);
 }
 
 TEST(Passages, NoMoreCellsThanAllowed) {
