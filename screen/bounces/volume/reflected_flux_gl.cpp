@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/emitter_points.h"
 #include "screen/bounces/volume/largest_power.h"
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/bounces/volume/slots.shared.h"
@@ -11,10 +10,18 @@
 
 namespace volgi::screen {
 
-ReflectedFluxGl::ReflectedFluxGl() : program_(gl::Program::compute("screen/bounces/volume/reflected_flux.comp.glsl")) {}
+ReflectedFluxGl::ReflectedFluxGl(const Scene& scene)
+    : program_(gl::Program::compute("screen/bounces/volume/reflected_flux.comp.glsl")) {
+  follow(scene);
+}
 
-void ReflectedFluxGl::run(const VoxelGridGl& voxels, const Scene& scene, const FirstBounce& first_bounce,
-                          SideFluxGl& flux, gl::PassTimer& timer) {
+void ReflectedFluxGl::follow(const Scene& scene) {
+  reflected_power_ = largest_reflected_power(scene);
+  emitted_power_ = largest_emitted_power(scene);
+}
+
+void ReflectedFluxGl::run(const VoxelGridGl& voxels, const FirstBounce& first_bounce, SideFluxGl& flux,
+                          gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const VirtualLightListGl& lights = first_bounce.lights;
   const bool in_parts = first_bounce.subdivision != nullptr;
@@ -35,8 +42,8 @@ void ReflectedFluxGl::run(const VoxelGridGl& voxels, const Scene& scene, const F
     gl::dispatch_linear(size_t(threads), LINEAR_GROUP);
     flux.collect(voxels, into);
   };
-  send(0, lights.reflected, largest_reflected_power(scene), flux.punctual());
-  send(lights.reflected, lights.emitted, largest_emitted_power(scene), flux.emitted());
+  send(0, lights.reflected, reflected_power_, flux.punctual());
+  send(lights.reflected, lights.emitted, emitted_power_, flux.emitted());
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 

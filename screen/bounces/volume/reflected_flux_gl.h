@@ -28,13 +28,15 @@ class ReflectedFluxGl {
  public:
   static constexpr const char* name = "screen/bounces/volume/reflected_flux";
   static constexpr int kRays = 1 << 17;  // at least one a sender
-  ReflectedFluxGl();
+  explicit ReflectedFluxGl(const Scene& scene);
+  /// The scene has changed: its light may be more. Looks at emissive textures, so not once a frame.
+  void follow(const Scene& scene);
   /// @param flux  begun for these voxels; reflected lights end in punctual(), emitted ones in emitted().
-  void run(const VoxelGridGl& voxels, const Scene& scene, const FirstBounce& first_bounce, SideFluxGl& flux,
-           gl::PassTimer& timer);
+  void run(const VoxelGridGl& voxels, const FirstBounce& first_bounce, SideFluxGl& flux, gl::PassTimer& timer);
 
  private:
   gl::Program program_;
+  float reflected_power_ = 0.0f, emitted_power_ = 0.0f;  // no light brings more [W]
 };
 
 }  // namespace volgi::screen

@@ -49,8 +49,8 @@ class LitVoxels {
   void run(const gl::SceneBuffers& buffers, const FirstBounce& first_bounce, gl::PassTimer& timer) {
     voxelize(buffers, timer);
     flux_.begin(voxels());
-    if (!reflected_flux_) reflected_flux_ = std::make_unique<ReflectedFluxGl>();
-    reflected_flux_->run(voxels(), scene_, first_bounce, flux_, timer);
+    if (!reflected_flux_) reflected_flux_ = std::make_unique<ReflectedFluxGl>(scene_);
+    reflected_flux_->run(voxels(), first_bounce, flux_, timer);
     if (first_bounce.sky == nullptr) return;
     if (!side_sky_) side_sky_ = std::make_unique<SideSkyGl>();
     side_sky_->run(voxels(), *first_bounce.sky, flux_, timer, first_bounce.sample);
@@ -60,6 +60,7 @@ class LitVoxels {
     if (!same_grid(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells, options_.grid_box), voxels().grid))
       return false;
     voxelization_.count_again();
+    if (reflected_flux_) reflected_flux_->follow(scene_);
     emitters_ = emitter_pieces(scene_, voxels().grid);
     follow_albedo();
     return true;
