@@ -21,8 +21,8 @@ constexpr std::array FAST = {
     "vpl.count=256",           "vpl.one_of=4", "val.count=24", "val.map=128",     "val.exact=0",     "gather.stride=4",
     "multires.tolerance=0.06", "sky.parts=64", "sky.map=128",  "shadow.spot=512", "shadow.cube=256", "shadow.sun=1024"};
 constexpr std::array<const char*, 0> DEFAULT = {};
-constexpr std::array FINE = {"vpl.count=4096",           "val.count=256",   "val.interleave=2",  "gather.stride=1",
-                             "multires.tolerance=0.015", "sky.parts=512",   "sky.interleave=2",  "shadow.spot=2048",
+constexpr std::array FINE = {"vpl.count=4096",           "val.count=256",   "val.interleave=2",   "gather.stride=1",
+                             "multires.tolerance=0.015", "sky.parts=512",   "sky.tolerance=0.03", "shadow.spot=2048",
                              "shadow.cube=1024",         "shadow.sun=4096", "negative.count=512"};
 
 constexpr std::array PRESETS = {

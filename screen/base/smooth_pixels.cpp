@@ -87,7 +87,7 @@ void SmoothPixels::run(const GBuffer& gbuffer, std::span<SmoothLight* const> lig
     }
     size_t first = 0;
     for (size_t k = 0; k < lights.size(); first += counts[k++])
-      lights[k]->gather(list, std::span(irradiance_).subspan(first, counts[k]), timer);
+      lights[k]->gather(list, step_px, std::span(irradiance_).subspan(first, counts[k]), timer);
     wait_for_pixels();
     step_px /= 2;
   }

@@ -19,8 +19,10 @@ class SmoothLight {
   /// Its pictures in this frame, RGBA32F [W m^-2 sr^-1]; at most SMOOTH_PICTURES of all lights together.
   virtual std::vector<const gl::Texture*> radiance() const = 0;
   /// Gathers the pixels of `list`. The G-buffer is bound.
+  /// @param step_px  of the grid that they are new on: those of 2 and 1 are many, and lie at edges.
   /// @param irradiance  RGBA32F [W m^-2], one for each of radiance(): where to.
-  virtual void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) = 0;
+  virtual void gather(const WorkList& list, int step_px, std::span<const gl::Texture> irradiance,
+                      gl::PassTimer& timer) = 0;
 };
 
 struct SmoothPixelOptions {

@@ -48,7 +48,8 @@ void VolumeGather::draw(const GBuffer& gbuffer, gl::PassTimer& timer) {
   gl::draw_fullscreen_triangle();
 }
 
-void VolumeGather::gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) {
+void VolumeGather::gather(const WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
+                          gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const bool apart = volume_->direct_is_apart;
   std::optional<gl::Program>& program = listed_[apart ? 1 : 0];

@@ -42,7 +42,8 @@ class VolumeGather : private SmoothLight {
 
  private:
   std::vector<const gl::Texture*> radiance() const override;
-  void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) override;
+  void gather(const WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
+              gl::PassTimer& timer) override;
   void draw(const GBuffer& gbuffer, gl::PassTimer& timer);
   void bind_volume(const gl::Program& program) const;
 

@@ -31,7 +31,8 @@ const gl::Program& LightCut::program() {
   return *program;
 }
 
-void LightCut::gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) {
+void LightCut::gather(const WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
+                      gl::PassTimer& timer) {
   const auto scope = timer.scope(name);
   const gl::Program& cut = program();
   list.bind(PIXEL_LIST_SLOT);

@@ -25,7 +25,8 @@ class LightCut final : public SmoothLight {
   /// @param with_direct  some lights stand for emission.
   void look_at(const LightTree& tree, const LightClusters& clusters, bool with_direct);
   std::vector<const gl::Texture*> radiance() const override;
-  void gather(const WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer& timer) override;
+  void gather(const WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
+              gl::PassTimer& timer) override;
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: arrival of emission [W m^-2 sr^-1]
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F: the first reflection of punctual light

@@ -2,71 +2,45 @@
 
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
-#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 namespace {
 
-constexpr const char* SHADER = "screen/sources/sky/sky_gather.comp.glsl";
-
-void wait_for_pictures() { glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT); }
+// Subsets of the parts that are looked at one after the other: so many maps stay in a cache.
+constexpr int SUBSETS = 8;
 
 }  // namespace
 
 SkyGather::SkyGather(glm::ivec2 size, const SkyOptions& options)
-    : size_(size),
-      options_(options),
+    : pixels_(size, {.tolerance = options.tolerance}),
       radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-      gather_(gl::Program::compute(SHADER)) {
-  if (options_.interleave == 1) return;
-  irradiance_ = gl::Texture::make_2d(GL_RGBA32F, size.x, size.y);
-  blur_.emplace(size, options_.interleave, GeometryBlurOptions());
-  worst_.emplace(size);
-  gather_listed_ = gl::Program::compute(SHADER, {"LISTED"});
+      program_(gl::Program::compute("screen/sources/sky/sky_gather.comp.glsl")) {}
+
+void SkyGather::run(const GBuffer& gbuffer, const SkyMaps& maps, gl::PassTimer& timer) {
+  maps_ = &maps;
+  SmoothLight* const alone = this;
+  pixels_.run(gbuffer, {&alone, 1}, timer);
+  maps_ = nullptr;
 }
 
-void SkyGather::run(const GBuffer& gbuffer, const SkyMaps& maps, float scene_diagonal_m, gl::PassTimer& timer,
-                    int sample) {
-  gbuffer.bind();
-  {
-    const auto scope = timer.scope(name);
-    gather(maps, sample);
-    if (blur_) blur_->run(irradiance_, radiance_, GeometryBlur::Estimate::anew, scene_diagonal_m);
+void SkyGather::gather(const WorkList& list, int step_px, std::span<const gl::Texture> irradiance,
+                       gl::PassTimer& timer) {
+  const auto scope = timer.scope(name);
+  maps_->bind(program_);
+  list.bind(PIXEL_LIST_SLOT);
+  irradiance[0].bind_image(SKY_IRRADIANCE_IMAGE, GL_READ_WRITE);
+  program_.set("subsets", SUBSETS);
+  program_.set("takers", step_px <= 2 ? 2 : 1);
+  for (int subset = 0; subset < SUBSETS; ++subset) {
+    program_.set("subset", subset);
+    program_.use();
+    list.dispatch();
+    glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
-  if (!blur_ || !(options_.exact_rows > 0.0f)) return;
-  const auto scope = timer.scope(exact_name);
-  worst_->find(blur_->error_estimate(), options_.exact_rows);
-  gather_again(maps);
-}
-
-void SkyGather::gather(const SkyMaps& maps, int sample) {
-  const int n = options_.interleave;
-  maps.bind(gather_);
-  (n > 1 ? irradiance_ : radiance_).bind_image(SKY_IRRADIANCE_IMAGE, GL_WRITE_ONLY);
-  gather_.set("interleave", n);
-  gather_.use();
-  for (int subset = 0; subset < n * n; ++subset) {
-    gather_.set("subset", subset);
-    gather_.set("offset", place_in_block((subset + sample) % (n * n), n));
-    gl::dispatch({(size_.x + n - 1) / n, (size_.y + n - 1) / n, 1}, {SQUARE_GROUP, SQUARE_GROUP, 1});
-  }
-  wait_for_pictures();
-}
-
-void SkyGather::gather_again(const SkyMaps& maps) {
-  maps.bind(gather_listed_);
-  radiance_.bind_image(SKY_IRRADIANCE_IMAGE, GL_WRITE_ONLY);
-  worst_->list().bind(PIXEL_LIST_SLOT);
-  gather_listed_.set("interleave", 1);
-  gather_listed_.set("subset", 0);
-  gather_listed_.use();
-  worst_->list().dispatch();
-  wait_for_pictures();
 }
 
 size_t SkyGather::bytes() const {
-  const size_t pictures = blur_ ? 2 : 1;
-  return pictures * 16 * size_t(size_.x) * size_t(size_.y) + (blur_ ? blur_->bytes() + worst_->bytes() : 0);
+  return pixels_.bytes() + sizeof(glm::vec4) * size_t(radiance_.size().x) * size_t(radiance_.size().y);
 }
 
 }  // namespace volgi::screen

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 
-#include "core/gl/limits.h"
 #include "core/gl/raster_state.h"
 #include "core/light_layers.h"
 #include "core/log.h"
@@ -50,9 +49,10 @@ void SkyMaps::run(const gl::SceneBuffers& buffers, const Scene& scene, gl::PassT
   gl::begin_geometry_pass();
   for (size_t layer = 0; layer < layers_.size(); ++layer) {
     framebuffers_[layer].bind();
-    constexpr std::array zero{0.0f, 0.0f, 0.0f, 0.0f};
-    glClearNamedFramebufferfv(framebuffers_[layer].id(), GL_COLOR, 0, zero.data());
-    glClearNamedFramebufferfv(framebuffers_[layer].id(), GL_DEPTH, 0, zero.data());
+    constexpr std::array nothing{0u, 0u, 0u, 0u};
+    constexpr float farthest = 0.0f;
+    glClearNamedFramebufferuiv(framebuffers_[layer].id(), GL_COLOR, 0, nothing.data());
+    glClearNamedFramebufferfv(framebuffers_[layer].id(), GL_DEPTH, 0, &farthest);
     program_.set("clip_from_world", layers_[layer].clip_from_world);
     program_.set("viewer", glm::vec4(-layers_[layer].forward, 0.0f));
     buffers.draw(program_);
@@ -72,14 +72,13 @@ void SkyMaps::draw_glass(const gl::SceneBuffers& buffers) {
 }
 
 void SkyMaps::make_room() {
-  const GLenum format = gl::renderable_format(GL_RG16_SNORM, GL_RG32F);
   const auto maps = int(layers_.size());
   depth_ = gl::Texture::make_2d_array(GL_DEPTH_COMPONENT32F, resolution_, resolution_, maps);
-  normal_ = gl::Texture::make_2d_array(format, resolution_, resolution_, maps);
+  surface_ = gl::Texture::make_2d_array(GL_RG32UI, resolution_, resolution_, maps);
   framebuffers_.clear();
   for (int layer = 0; layer < maps; ++layer) {
     using Attachment = gl::Framebuffer::Attachment;
-    const std::array colors{Attachment{&normal_, layer}};
+    const std::array colors{Attachment{&surface_, layer}};
     framebuffers_.emplace_back(colors, Attachment{&depth_, layer}, glm::ivec2(resolution_));
   }
   if (!glass_) return;
@@ -93,7 +92,7 @@ void SkyMaps::make_room() {
 }
 
 void SkyMaps::upload_parts() {
-  std::vector<shared::SkyPart> parts(SKY_MAX_PARTS);  // a uniform block is bound whole
+  std::vector<shared::SkyPart> parts(layers_.size());
   for (size_t k = 0; k < layers_.size(); ++k) {
     const shared::ReflectiveShadowLayer& l = layers_[k];
     const float texels = float(resolution_);
@@ -103,18 +102,16 @@ void SkyMaps::upload_parts() {
     parts[k].column = linear(l.right * (0.5f * texels / l.extent_x), 0.5f * texels);
     parts[k].row = linear(l.up * (0.5f * texels / l.extent_y), 0.5f * texels);
     parts[k].way = linear(l.forward, 0.0f);
-    parts[k].one_column = glm::vec4(l.right * (2.0f * l.extent_x / texels), l.depth_scale_m);
-    const float texel_m = 2.0f * std::max(l.extent_x, l.extent_y) / texels;
-    parts[k].one_row = glm::vec4(l.up * (2.0f * l.extent_y / texels), texel_m / 256.0f + l.depth_scale_m / 1048576.0f);
-    parts[k].irradiance = glm::vec4(parts_[k % parts_.size()].irradiance, 0.0f);
+    parts[k].light = glm::vec4(parts_[k % parts_.size()].irradiance, l.depth_scale_m);
   }
+  const GLuint before = part_buffer_.id();
   gl::put(part_buffer_, parts);
+  if (part_buffer_.id() != before) part_texels_ = gl::Texture::view_of(part_buffer_, GL_RGBA32F, sizeof(glm::vec4));
 }
 
 void SkyMaps::bind(const gl::Program& program) const {
-  part_buffer_.bind_uniform(SKY_PARTS_BLOCK);
-  depth_.bind(SKY_DEPTH_UNIT);
-  normal_.bind(SKY_NORMAL_UNIT);
+  part_texels_.bind(SKY_PARTS_UNIT);
+  surface_.bind(SKY_SURFACE_UNIT);
   if (glass_) tint_.bind(SKY_TINT_UNIT);
   program.set("sky_glass", glass_ ? 1 : 0);
   program.set("sky_detailed", detailed() ? 1 : 0);
@@ -123,7 +120,7 @@ void SkyMaps::bind(const gl::Program& program) const {
 }
 
 size_t SkyMaps::bytes() const {
-  return (glass_ ? 16 : 8) * size_t(resolution_) * size_t(resolution_) * layers_.size() + part_buffer_.bytes();
+  return (glass_ ? 20 : 12) * size_t(resolution_) * size_t(resolution_) * layers_.size() + part_buffer_.bytes();
 }
 
 }  // namespace volgi::screen

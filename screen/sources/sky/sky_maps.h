@@ -22,14 +22,14 @@ struct SkyOptions {
   enum class First { volume, lights };
   std::optional<First> first;
   int map_texels = 128;
-  int interleave = 4;       // as AreaLightGatherOptions has it
-  float exact_rows = 6.0f;  // likewise
+  float tolerance = 0.06f;  // as SmoothPixelOptions has it: 256 parts of the sky err by 1 % on average themselves
 };
 
 /// Pass "screen/sources/sky/sky_maps": the sky as lights that are far away (core/sky.h), each with a map of what it
 /// sees of the scene: depth and normals, compared without bias as reflective shadow maps are. Where most of the scene
 /// is bare ground each part has a second map, of what stands on it (detail_box()). Drawn anew only where sky, scene or
-/// sample have changed. Cost then: one draw of the scene a map; 8 bytes of GPU memory a texel, 16 where there is glass.
+/// sample have changed. Cost then: one draw of the scene a map; 12 bytes of GPU memory a texel, 20 where there is
+/// glass.
 class SkyMaps {
  public:
   static constexpr const char* name = "screen/sources/sky/sky_maps";
@@ -47,10 +47,7 @@ class SkyMaps {
   /// Grows whenever the maps change.
   int version() const { return version_; }
   size_t bytes() const;
-  void list_textures(std::vector<NamedTexture>& list) const {
-    list_texture(list, name, "depth", depth_);
-    list_texture(list, name, "normals", normal_);
-  }
+  void list_textures(std::vector<NamedTexture>& list) const { list_texture(list, name, "depth", depth_); }
 
  private:
   void make_room();
@@ -66,9 +63,10 @@ class SkyMaps {
   std::optional<SkyParts> sky_;  // of the last sky that was drawn
   std::vector<SkyLight> parts_;
   std::vector<shared::ReflectiveShadowLayer> layers_;  // of the parts, and again of the parts where there is detail
-  gl::Texture depth_, normal_, tint_;
+  gl::Texture depth_, surface_, tint_;
   std::vector<gl::Framebuffer> framebuffers_, through_glass_;
   gl::Buffer part_buffer_;
+  gl::Texture part_texels_;  // a view of it
   gl::Program program_;
   std::optional<Glass> glass_;  // where there is some
 };

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/error.h"
 #include "screen/sources/sky/sky_gather.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
 
@@ -25,19 +24,11 @@ constexpr Parameter PARAMETERS[] = {
         {"sky.map", "texels", "on a side of each part's map"}, {16, 2048},
         [](Options& o) -> auto& { return o.map_texels; }),
     number<Options>(
-        {"sky.interleave", "pixels", "blocks of n x n share the parts: 1, 2, 4 or 8"}, {1, 8},
-        [](Options& o) -> auto& { return o.interleave; }),
-    number<Options>(
-        {"sky.exact", "rows", "as many pixels as so many rows hold get every part, the worst ones"}, {0, 65536},
-        [](Options& o) -> auto& { return o.exact_rows; }),
+        {"sky.tolerance", "", "of its light straight from the sky that a pixel's neighbours may err by"}, {0, 1},
+        [](Options& o) -> auto& { return o.tolerance; }),
 };
 
-StageRole role(const FrameOptions& options) {
-  const int n = options.of<Options>().interleave;
-  if (n != 1 && n != 2 && n != 4 && n != 8)
-    throw Error(ExitCode::usage, "sky.interleave: 1, 2, 4 or 8, not " + std::to_string(n));
-  return {.makes = {product<SkyMaps>()}, .adds = {{{LightPath::sky_direct}}}};
-}
+StageRole role(const FrameOptions&) { return {.makes = {product<SkyMaps>()}, .adds = {{{LightPath::sky_direct}}}}; }
 
 class SkyStage : public Stage {
  public:
@@ -51,13 +42,15 @@ class SkyStage : public Stage {
     maps_.run(frame.triangles, frame.scene, timer, frame.sample);
     frame.lend(maps_);
     if (!gather_) return;
-    gather_->run(frame.gbuffer, maps_, frame.scene_diagonal_m, timer, frame.sample);
-    frame.layers.push_back({&gather_->radiance(), {LightPath::sky_direct}});
+    gather_->run(frame.gbuffer, maps_, timer);
+    frame.layers.push_back({gather_->radiance().front(), {LightPath::sky_direct}});
   }
   void scene_changed() override { maps_.scene_moved(); }
   void report(FrameReport& report) const override {
     report.add("sky_parts", double(maps_.part_count()),
                maps_.part_count() > 0 ? std::to_string(maps_.part_count()) + " parts of the sky" : std::string());
+    const bool gathered = gather_ && maps_.part_count() > 0;
+    report.add("sky_gathered_share", gathered ? gather_->gathered_share() : 0.0);
     report.memory_bytes += maps_.bytes() + (gather_ ? gather_->bytes() : 0);
   }
   void list_textures(std::vector<NamedTexture>& list) const override {
@@ -87,6 +80,10 @@ constinit const StageType SKY{
     .parameters = PARAMETERS,
     .role = role,
     .make = [](const StageContext& context) -> std::unique_ptr<Stage> { return std::make_unique<SkyStage>(context); },
-    .report_nothing = [](FrameReport& report) { report.add("sky_parts", 0.0); }};
+    .report_nothing =
+        [](FrameReport& report) {
+          report.add("sky_parts", 0.0);
+          report.add("sky_gathered_share", 0.0);
+        }};
 
 }  // namespace volgi::screen

@@ -43,7 +43,7 @@ Settings quick() {
   s.frame.of<VolumeOptions>().grid_cells = 8;
   for (const char* text :
        {"vpl.count=32", "val.count=4", "val.map=16", "val.exact=0", "shadow.spot=64", "shadow.cube=32", "shadow.sun=64",
-        "sky.parts=16", "sky.map=16", "sky.exact=0", "negative.count=8"})
+        "sky.parts=16", "sky.map=16", "sky.tolerance=0.2", "negative.count=8"})
     screen::set_parameter(s.frame.settings, text);
   return s;
 }

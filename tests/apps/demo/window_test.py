@@ -44,7 +44,7 @@ def scene(name):
 # Pictures in a few hundredths of a second on a software rasterizer.
 QUICK = ["--grid", "12", "--set", "vpl.count=128", "--set", "val.count=16", "--set", "val.map=64", "--set",
          "val.exact=2", "--set", "shadow.spot=256", "--set", "shadow.cube=128", "--set", "shadow.sun=256", "--set",
-         "sky.parts=16", "--set", "sky.map=64", "--set", "sky.exact=2", "--set", "negative.count=32"]
+         "sky.parts=16", "--set", "sky.map=64", "--set", "sky.tolerance=0.2", "--set", "negative.count=32"]
 # Within the Cornell box, which fills the picture then.
 # Each picture is rendered once, at its size.
 STILL = {"progressive": False, "motion_fps": 0}

@@ -25,7 +25,8 @@ class KnownLight : public screen::SmoothLight {
       : size_(size), f_(std::move(f)), radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)) {
     radiance_.clear({-1.0f, -1.0f, -1.0f, -1.0f});
   }
-  void gather(const screen::WorkList& list, std::span<const gl::Texture> irradiance, gl::PassTimer&) override {
+  void gather(const screen::WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
+              gl::PassTimer&) override {
     for (const GLuint packed : list.entries()) {
       const int x = int(packed & 0xffffu), y = int(packed >> 16);
       const glm::vec4 value(f_(x, y));
