@@ -8,6 +8,7 @@
 #include "apps/demo/demo_options.h"
 #include "apps/demo/lists.h"
 #include "apps/demo/run_headless.h"
+#include "apps/demo/run_volume.h"
 #include "apps/demo/run_window.h"
 #include "core/error.h"
 #include "volgi_version.h"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
     }
     if (options.scenes.empty()) options.scenes.push_back(demo::default_scene());
     options.frame.volume.limit_threads();
+    if (demo::is_volume(options)) return demo::run_volume(options);
     return options.headless || !options.benchmark.empty() ? demo::run_headless(options) : demo::run_window(options);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);
