@@ -10,6 +10,7 @@
 #include "apps/demo/run_headless.h"
 #include "apps/demo/run_volume.h"
 #include "apps/demo/run_window.h"
+#include "apps/volgi/program_help.h"
 #include "core/error.h"
 #include "volgi_version.h"
 
@@ -21,6 +22,7 @@ int main(int argc, char** argv) {
   demo::DemoOptions options;
   options.add_to(app);
   try {
+    if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return int(ExitCode::done);
     app.parse(argc, argv);
     if (!options.list.empty()) {
       std::cout << demo::list_of(options.list);
