@@ -29,8 +29,6 @@ install(DIRECTORY shaders DESTINATION ${VOLGI_HEADER_DIR} FILES_MATCHING PATTERN
 # For shaders of other programs (examples/minimal).
 install(FILES shaders/screen/library/volume_light.glsl DESTINATION ${VOLGI_HEADER_DIR}/shaders/screen/library)
 
-install(FILES LICENSE TYPE DOC)
-
 configure_package_config_file(cmake/volgiConfig.cmake.in ${PROJECT_BINARY_DIR}/volgiConfig.cmake
   INSTALL_DESTINATION ${VOLGI_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
 # Before 1.0 a minor version may change anything.

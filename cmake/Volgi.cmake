@@ -74,6 +74,14 @@ function(volgi_room name)
   set_property(GLOBAL APPEND PROPERTY VOLGI_TARGETS volgi_${name})
 endfunction()
 
+# volgi_install_program(TARGET): into bin/. The package that brings its libraries (cmake/Package.cmake) has them in
+# lib/volgi; they are found there, and theirs in turn, which DT_RUNPATH would not do.
+function(volgi_install_program program)
+  set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/volgi")
+  target_link_options(${program} PRIVATE -Wl,--disable-new-dtags)
+  install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
+endfunction()
+
 # volgi_test(NAME LABELS... SOURCES... LIBS... [FILTER googletest's]): one GoogleTest program, one ctest entry per test
 # case.
 function(volgi_test name)

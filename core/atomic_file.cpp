@@ -28,9 +28,11 @@ struct TemporaryFile {
 };
 
 fs::path temporary_name(const fs::path& target) {
-  static std::atomic<unsigned> counter{0};  // two threads may write the same target
+  static std::atomic<unsigned> counter{0};  // two threads may write the same target, and two machines as well
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
   fs::path name = target.stem();
-  name += fmt::format(".tmp-{}-{}", getpid(), counter++);
+  name += fmt::format(".tmp-{}-{}-{}", host, getpid(), counter++);
   name += target.extension();
   return target.parent_path() / name;
 }

@@ -8,7 +8,7 @@
 namespace volgi {
 
 /// Where the scene of any time comes from: a glTF file, or geometry that the program makes itself, which is called
-/// `builtin:NAME` (a file of such a name is `./builtin:NAME`).
+/// builtin:NAME (a file of such a name is ./builtin:NAME).
 ///
 ///     const SceneSource source("builtin:metaballs");
 ///     WorldBox box;                                      // around all frames: the volume's grid stands still

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "voxel/volume_field.h"
+
 namespace volgi {
 
 const char* sh_grid_name(int coefficient) {
-  static constexpr const char* kNames[] = {"sh_00",  "sh_1m1", "sh_10", "sh_11", "sh_2m2",
-                                           "sh_2m1", "sh_20",  "sh_21", "sh_22"};
-  assert(coefficient >= 0 && coefficient < 9);
-  return kNames[coefficient];
+  assert(coefficient >= 0 && size_t(coefficient) < kBandNames.size());
+  return kBandNames[size_t(coefficient)];
 }
 
 vdb::Vec3SGridPtr fluence(const RadianceVolume& radiance) {

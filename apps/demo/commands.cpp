@@ -9,6 +9,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "apps/demo/camera_control.h"
+#include "apps/demo/command_text.h"
 #include "apps/demo/presets.h"
 #include "apps/volgi/parse_number.h"
 #include "apps/volgi/volume_options.h"
@@ -21,38 +22,6 @@ namespace volgi::demo {
 namespace {
 
 using Text = const std::string&;
-
-[[noreturn]] void misused(const std::string& what) { throw Error(ExitCode::usage, what); }
-
-double number(Text text, const char* what) {
-  const auto value = app::parse_number<double>(text);
-  if (!value) misused(fmt::format("'{}': {} is a number", text, what));
-  return *value;
-}
-
-int whole(Text text, const char* what, int least, int most) {
-  const auto value = app::parse_number<int>(text);
-  if (!value || *value < least || *value > most)
-    misused(fmt::format("'{}': {} is a whole number from {} to {}", text, what, least, most));
-  return *value;
-}
-
-glm::dvec3 three(Text text, const char* what) {
-  const std::vector<double> v = app::parse_numbers(text);
-  if (v.size() != 3) misused(fmt::format("'{}': {} is X,Y,Z", text, what));
-  return {v[0], v[1], v[2]};
-}
-
-/// The first word, and the rest.
-std::pair<std::string, std::string> split(std::string_view text) {
-  const size_t start = std::min(text.find_first_not_of(' '), text.size());
-  text.remove_prefix(start);
-  const size_t end = std::min(text.find(' '), text.size());
-  std::string_view rest = text.substr(end);
-  rest.remove_prefix(std::min(rest.find_first_not_of(' '), rest.size()));
-  while (rest.ends_with(' ')) rest.remove_suffix(1);
-  return {std::string(text.substr(0, end)), std::string(rest)};
-}
 
 Session& with_scene(Viewer& viewer) {
   if (!viewer.session.has_scene()) misused("no scene is open; open FILE");

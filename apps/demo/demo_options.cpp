@@ -17,8 +17,10 @@ constexpr int LARGEST_EDGE = 16384;
 }  // namespace
 
 void DemoOptions::add_to(CLI::App& app) {
-  app.add_option("SCENE", scenes,
-                 "glTF 2.0 scene (.gltf or .glb), or builtin:metaballs; more: beside it (the Cornell box)")
+  app.add_option(
+         "SCENE", scenes,
+         "glTF 2.0 scene (.gltf or .glb), or builtin:metaballs; more: beside it (the Cornell box); or one OpenVDB "
+         "file (.vdb) to look at")
       ->type_name("FILE");
   app.add_option("--size", size, fmt::format("of the window, or of the picture without one ({})", DEFAULT_SIZE))
       ->type_name("WxH");
@@ -37,7 +39,10 @@ void DemoOptions::add_to(CLI::App& app) {
   app.add_option("--shaders", shaders, "folder of shaders, read anew whenever one of them changes");
   app.add_option("--pictures", pictures, "folder for screenshots")->capture_default_str();
   app.add_option("--events", events, "writes what happens to this file, a line of JSON each");
-  app.add_option("--list", list, "prints the window's keys, commands or views as a Markdown table, and ends");
+  app.add_option(
+      "--list", list,
+      "prints the window's keys, commands or views, or for a volume volume-keys or volume-commands, as a Markdown "
+      "table, and ends");
   app.add_option("--quit-after", quit_after_s, "ends after so long [s]");
   CLI::Option* no_window = app.add_flag("--headless", headless, "renders to -o without a window or a display");
   CLI::Option* along =
@@ -59,6 +64,7 @@ void DemoOptions::add_to(CLI::App& app) {
       "Examples: volgi-demo data/room.glb\n"
       "          volgi-demo data/cornell.glb --headless --view voxels -o voxels.png\n"
       "          volgi-demo builtin:metaballs --headless --path tour.json -o tour.webp\n"
+      "          volgi-demo out/cornell.vdb --headless --do \"grid radiance\" --do \"direction 0,-90\" -o down.png\n"
       "Exit codes: as volgi's; 4 without a display or OpenGL 4.5.");
 }
 

@@ -8,7 +8,9 @@
 #include "apps/demo/demo_options.h"
 #include "apps/demo/lists.h"
 #include "apps/demo/run_headless.h"
+#include "apps/demo/run_volume.h"
 #include "apps/demo/run_window.h"
+#include "apps/volgi/program_help.h"
 #include "core/error.h"
 #include "volgi_version.h"
 
@@ -20,6 +22,7 @@ int main(int argc, char** argv) {
   demo::DemoOptions options;
   options.add_to(app);
   try {
+    if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return int(ExitCode::done);
     app.parse(argc, argv);
     if (!options.list.empty()) {
       std::cout << demo::list_of(options.list);
@@ -27,6 +30,7 @@ int main(int argc, char** argv) {
     }
     if (options.scenes.empty()) options.scenes.push_back(demo::default_scene());
     options.frame.volume.limit_threads();
+    if (demo::is_volume(options)) return demo::run_volume(options);
     return options.headless || !options.benchmark.empty() ? demo::run_headless(options) : demo::run_window(options);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);

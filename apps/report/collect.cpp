@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/report/added_picture.h"
+#include "core/claims.h"
 #include "core/progress.h"
 
 namespace volgi::app {
@@ -37,7 +38,8 @@ std::vector<Task> tasks_of(std::vector<ReportScene>& scenes, const Sweep& sweep,
 // Of the scene at hand; read when first asked for.
 class References {
  public:
-  References(const Sweep& sweep, const MeasureContext& context) : sweep_(sweep), context_(context) {}
+  References(const Sweep& sweep, const MeasureContext& context, Claims& claims)
+      : sweep_(sweep), context_(context), claims_(claims) {}
 
   const ReportReference& all_bounces(ReportScene& scene, const std::string& light) { return get(scene, light, false); }
   const ReportReference* one_bounce(ReportScene& scene, const std::string& light, const Setting& setting) {
@@ -50,6 +52,9 @@ class References {
     scene_ = &scene;
     const auto [at, is_new] = read_.try_emplace(light + (one_bounce ? "1" : ""));
     if (is_new) {
+      // Traced by one, read by all.
+      std::optional<Claims::Claim> claim;
+      if (!one_bounce && !scene.all_bounces) claim.emplace(claims_.wait_for("reference-" + scene.hash));
       at->second =
           reference_of(scene, light, one_bounce, context_.size, sweep_.references, context_.folder / "references");
       if (!one_bounce) write_reference_picture(scene, light, at->second, context_.folder);
@@ -59,6 +64,7 @@ class References {
 
   const Sweep& sweep_;
   const MeasureContext& context_;
+  Claims& claims_;
   const ReportScene* scene_ = nullptr;
   std::map<std::string, ReportReference> read_;
 };
@@ -75,18 +81,26 @@ std::vector<Json> collect_points(std::vector<ReportScene>& scenes, const Sweep& 
                                  PointsFile& file) {
   for (const Setting& setting : sweep.settings) check_setting(setting, context);
   const std::vector<Task> tasks = tasks_of(scenes, sweep, context);
+  Claims claims(context.folder / "claims");
+  file.refresh();
+  const size_t before = file.lines();
+  // A point that failed is tried again by the next report, not by everybody who takes part in this one.
+  const auto is_done = [&](int k) {
+    file.refresh();
+    const std::string& key = tasks[size_t(k)].key;
+    return file.find(key) != nullptr || file.find_after(before, key) != nullptr;
+  };
   const auto to_do = std::count_if(tasks.begin(), tasks.end(), [&](const Task& t) { return !file.find(t.key); });
   Progress progress("report", std::uint64_t(to_do));
-  References references(sweep, context);
+  References references(sweep, context, claims);
+  claims.work(
+      int(tasks.size()), [&](int k) { return tasks[size_t(k)].key; }, is_done,
+      [&](int k) {
+        file.append(measure(tasks[size_t(k)], references, context));
+        progress.advance();
+      });
   std::vector<Json> points;
-  for (const Task& task : tasks) {
-    const Json* finished = file.find(task.key);
-    if (finished == nullptr) {
-      finished = &file.append(measure(task, references, context));
-      progress.advance();
-    }
-    points.push_back(*finished);
-  }
+  for (const Task& task : tasks) points.push_back(*file.find_after(0, task.key));
   return points;
 }
 
@@ -98,7 +112,8 @@ Repeated repeat_points(std::vector<ReportScene>& scenes, const Sweep& sweep, con
   });
   const size_t wanted = std::min(tasks.size(), size_t(std::max(count, 0)));
   Progress progress("repeat", wanted);
-  References references(sweep, context);
+  Claims claims(context.folder / "claims");
+  References references(sweep, context, claims);
   Repeated out;
   for (size_t i = 0; i < wanted; ++i) {
     const Task& task = tasks[i * tasks.size() / wanted];

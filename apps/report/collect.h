@@ -12,7 +12,9 @@
 namespace volgi::app {
 
 /// Measures every setting of the sweep on every scene and light, with a progress bar; points that `file` has are not
-/// measured again. Writes the pictures of points and references below context.folder.
+/// measured again. Writes the pictures of points and references below context.folder. Whoever measures the same sweep
+/// into the same folder at that time shares the work (core/claims.h, in context.folder/claims): each point is measured
+/// by one, and all return when there are no more.
 /// @return the points, by scene, setting and light as the sweep lists them.
 /// @throws Error(usage) for a setting that cannot be; Error as reference_of and PointsFile::append do.
 std::vector<nlohmann::ordered_json> collect_points(std::vector<ReportScene>& scenes, const Sweep& sweep,

@@ -14,6 +14,7 @@
 #include "apps/volgi/frame_times.h"
 #include "apps/volgi/parse_number.h"
 #include "apps/volgi/scene_options.h"
+#include "apps/volgi/shared_frames.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/exposure.h"
@@ -46,12 +47,14 @@ struct RenderCommand {
   std::string animate;         // T0:T1:FPS; empty: one picture
   AreaVideo video;
   bool whole_animation = false;
+  std::filesystem::path share;  // folder of who does which frame; empty: one process does them all
   DeviceOptions device;
 
   int run();
 
  private:
   std::optional<float> exposure_ev_;  // as asked for, or of the first picture for all of them
+  std::optional<SharedFrames> shared_;
 
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
@@ -59,6 +62,7 @@ struct RenderCommand {
   TimedFrames render_animation(std::optional<screen::Frame>& picture, const screen::FrameOptions& options,
                                const SceneSource& source, Scene& moving, const FrameTimes& times, const WorldBox& box,
                                gl::PassTimer& timer, bool software);
+  void share_frames(int count, const std::function<void(int)>& frame);
   bool writes_png() const { return out.extension() == ".png"; }
   void light(Scene& loaded, const Camera& camera) const;
   void read_exposure();
@@ -196,13 +200,26 @@ TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loa
   return timed;
 }
 
+/// All frames, with whoever shares them.
+void RenderCommand::share_frames(int count, const std::function<void(int)>& make) {
+  if (writes_png() && !exposure_ev_) {  // one for all of them: the first frame's, whoever makes it
+    shared_->work(0, 1, [&](int k) {
+      make(k);
+      shared_->keep_exposure(exposure_ev_.value());
+    });
+    exposure_ev_ = shared_->exposure();
+  }
+  shared_->work(0, count, make);
+}
+
 /// Each picture is written, whole, before the next one begins.
 TimedFrames RenderCommand::render_animation(std::optional<screen::Frame>& picture, const screen::FrameOptions& options,
                                             const SceneSource& source, Scene& moving, const FrameTimes& times,
                                             const WorldBox& box, gl::PassTimer& timer, bool software) {
-  TimedFrames timed{1, false, {}};
+  TimedFrames timed{0, false, {}};
   Progress progress("render", std::uint64_t(times.count));
-  for (int k = 0; k < times.count; ++k) {
+  const auto frame_of = [&](int k) {
+    if (timed.count == 1 && !timed.warm) timer.reset();  // the first one's times are those of a cold frame
     timer.begin_frame();
     {
       const auto scope = timer.scope("core/move_scene");
@@ -216,13 +233,16 @@ TimedFrames RenderCommand::render_animation(std::optional<screen::Frame>& pictur
     }
     picture->render(scene.camera(moving), timer);
     timer.end_frame();
-    if (k == 0) timed.cold = cold_frame(timer);
+    const bool first = timed.count == 0;
+    timed = first ? TimedFrames{1, false, cold_frame(timer)}
+                  : TimedFrames{timed.warm ? timed.count + 1 : 1, true, timed.cold};
     write_picture(all_samples(*picture, moving, scene.camera(moving), software), frame_path(out, k));
     progress.advance();
-    if (k == 0 && times.count > 1) {
-      timer.reset();
-      timed = {times.count - 1, true, timed.cold};
-    }
+  };
+  if (!shared_) {
+    for (int k = 0; k < times.count; ++k) frame_of(k);
+  } else {
+    share_frames(times.count, frame_of);
   }
   return timed;
 }
@@ -248,6 +268,7 @@ int RenderCommand::run() {
   screen::FrameOptions options = frame.frame_options(scene.size());
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
   check_outputs();
+  if (!share.empty()) shared_.emplace(share);
   const SceneSource source(scene.scene_path, scene.file.reading);
   const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
   Scene loaded = animate.empty() && !whole_animation ? source.at(scene.time_s) : source.at(times.at(0), box);
@@ -269,6 +290,10 @@ int RenderCommand::run() {
   const TimedFrames timed_frames =
       animate.empty() ? render_still(*picture, loaded, timer, context.software())
                       : render_animation(picture, options, source, loaded, times, box, timer, context.software());
+  if (timed_frames.count == 0) {
+    if (!quiet) fmt::print("all frames were made by others\n");
+    return int(ExitCode::done);
+  }
   const auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
@@ -310,6 +335,14 @@ void add_render_command(CLI::App& app, int& exit_code) {
           ->type_name("T0:T1:FPS")
           ->excludes(command->get_option("--time"));
   options->video.add_to(*command);
+  command
+      ->add_option(
+          "--share", options->share,
+          "shares the frames with every process that runs this command, here or on another machine that sees "
+          "FOLDER: each frame is made by one, and by another where that one is killed; frames that FOLDER says "
+          "are done are not made again")
+      ->type_name("FOLDER")
+      ->needs(animate);
   command->add_flag("--whole-animation", options->whole_animation,
                     "the volume's grid is around all that moves at any time, not only at those that are rendered");
   command
@@ -322,12 +355,17 @@ void add_render_command(CLI::App& app, int& exit_code) {
                     "no lamp beside the camera where a scene for a PNG has no light");
   options->device.add_to(*command);
   command->add_option("--stats", options->stats, "write times, grid and memory to this JSON file");
-  command->add_option("--dump", options->dump,
-                      "folder for what the last frame was lit by: virtual_lights.json, for reference --vpls");
+  command
+      ->add_option("--dump", options->dump,
+                   "folder for what the last frame was lit by: virtual_lights.json, for reference --vpls")
+      ->excludes(command->get_option("--share"));
   command->add_flag("--quiet", options->quiet, "print nothing but errors");
   command->footer(
       "Example: volgi render data/cornell.glb -o out/cornell.png --light indirect --grid 32 --size 512x512\n"
-      "         volgi render builtin:metaballs -o out/balls.png --gi hybrid --animate 0:8:25");
+      "         volgi render builtin:metaballs -o out/balls.png --gi hybrid --animate 0:8:25\n"
+      "         (this twice or more, at the same time:) volgi render builtin:metaballs -o out/balls.png --animate "
+      "0:8:25 "
+      "--share out/balls.share");
   command->callback([options, &exit_code] { exit_code = options->run(); });
 }
 

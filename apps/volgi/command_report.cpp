@@ -166,7 +166,9 @@ int run(const ReportOptions& options, const std::string& command) {
 constexpr const char* kFooter =
     R"(Writes DIR/index.html, one file that opens from disk: plots, verdicts, pictures, tables; beside it report.csv,
 report.json, pictures/ and points.jsonl, a line a point. An interrupted report goes on where it was: a point is known by
-scene content, technique, options, light, size, frames, device, machine and program, and measured once. Techniques and
+scene content, technique, options, light, size, frames, device, machine and program, and measured once.
+The same command started again meanwhile shares the work, here or on another machine of the same kind; where times
+matter, one a machine (docs/batches.md). Techniques and
 their sweeps are listed in data/report/full.json and quick.json, which are built into the program.
 SCENE is a name from data/scenes.json or a glTF file; without a stored reference of that size one is traced first.
 --quick: cornell, room, thin_wall and atrium, under three minutes on two cores.

@@ -5,6 +5,7 @@
 
 #include "apps/volgi/commands.h"
 #include "apps/volgi/failure.h"
+#include "apps/volgi/program_help.h"
 #include "core/error.h"
 #include "volgi_version.h"
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   app::add_report_command(app, exit_code);
 #endif
   try {
+    if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return exit_code;
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);

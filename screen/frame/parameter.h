@@ -63,7 +63,7 @@ struct Unwrapped<std::optional<T>> {
 
 }  // namespace detail
 
-/// @param member  [](Options& o) -> auto& { return o.member; }, a member of a struct that TypeMap keeps.
+/// The last argument is [](Options& o) -> auto& { return o.member; }, of a member of a struct that TypeMap keeps.
 template <class Options, class Member>
 constexpr Parameter parameter(ParameterText text, ParameterRange range, std::span<const char* const> names,
                               Member /*member*/) {

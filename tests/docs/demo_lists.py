@@ -8,7 +8,7 @@ program, path = sys.argv[1:3]
 with open(path, encoding="utf-8") as page:
     text = page.read()
 expected = text
-for name in ("keys", "commands", "views"):
+for name in ("keys", "commands", "views", "volume-keys", "volume-commands"):
     table = subprocess.run([program, "--list", name], check=True, capture_output=True, text=True).stdout
     block = re.compile(f"<!-- {name} -->.*?<!-- /{name} -->", re.DOTALL)
     if not block.search(expected):

@@ -33,6 +33,33 @@ must "$volgi" render "$scene" "${small[@]}" --gi none --quiet -o 'still_%02d.png
 cmp still_00.png still_01.png || fail "a scene without animation moved"
 rm still_*.png
 
+# Two workers share the frames, one of them is killed at its second frame: the pictures of one process, and the exposure of
+# the first frame for all. A third comes when all is done.
+balls=(builtin:metaballs "${small[@]}" --gi hybrid --backend cpu --animate 0:1.5:4 --quiet)
+must "$volgi" render "${balls[@]}" -o one.png
+must "$volgi" render "${balls[@]}" -o one.exr
+for kind in png exr; do
+  for worker in 0 1; do
+    "$volgi" render "${balls[@]}" -o "two.$kind" --share "share.$kind" 2> "$logs/worker$worker" &
+    workers[worker]=$!
+    until [[ $worker == 1 || -e share.$kind/frame-0000.done ]] || ! kill -0 "${workers[0]}" 2> "$logs/out"; do sleep 0.01; done
+  done
+  kill -KILL "${workers[0]}"
+  wait "${workers[0]}" 2> "$logs/out"
+  wait "${workers[1]}" || fail "the second worker of $kind failed: $(< "$logs/worker1")"
+  for k in 0 1 2 3 4 5 6; do
+    cmp "one.000$k.$kind" "two.000$k.$kind" || fail "shared frame $k is another picture"
+  done
+  [[ $(echo "share.$kind"/*.claim) == "share.$kind/*.claim" ]] || fail "claims are left: $(echo "share.$kind"/*.claim)"
+  touch -d @0 two.*."$kind"
+  must "$volgi" render "${balls[@]}" -o "two.$kind" --share "share.$kind"
+  [[ $(find . -name "two.*.$kind" -newermt @1 | wc -l) == 0 ]] || fail "frames that were done are made again"
+done
+refuse 2 "is of another command" render "${balls[@]}" -o two.png --half --share share.png
+refuse 2 --animate render "$scene" -o out.png --share share.png
+refuse 2 --share render "${balls[@]}" -o two.png --share share.png --dump lights
+rm -r one.* two.* share.*
+
 # A film on an emissive texture: frames are the stills of their times, here and in the reference; it begins again.
 must "$volgi" render "$scene" --size 8x4 --gi none --exposure 3 -o film.0000.png --quiet
 must "$volgi" render "$scene" --size 6x6 --gi none --exposure -1 -o film.0001.png --quiet

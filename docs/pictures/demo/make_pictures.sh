@@ -69,8 +69,16 @@ window() {
   rm -f "$events"
 }
 
+volume() {
+  local vdb
+  vdb=$(mktemp --suffix=.vdb)
+  "${demo%-demo}" export data/cornell.glb -o "$vdb" --grid 48 --quiet
+  "$demo" "$vdb" --headless --size 720x640 --do cut --do "move 0,-8,-6" --do "range 0,9" -o docs/pictures/demo/volume.png
+  rm "$vdb"
+}
+
 case $what in
-  all) views && film && window ;;
-  views | film | window) "$what" ;;
-  *) echo "make_pictures.sh: views, film, window or nothing" >&2 && exit 2 ;;
+  all) views && film && window && volume ;;
+  views | film | window | volume) "$what" ;;
+  *) echo "make_pictures.sh: views, film, window, volume or nothing" >&2 && exit 2 ;;
 esac

@@ -387,6 +387,92 @@ class WindowCase(Case):
 # --- cases ----------------------------------------------------------------------------------------------------------
 
 
+class Volumes(WindowCase):
+    """OpenVDB files instead of scenes."""
+
+    def volume(self):
+        file = self.folder / "cornell.vdb"
+        subprocess.run([Given.volgi, "export", scene("cornell"), "-o", file, "--grid", "12", "--backend", "cpu", "--quiet"],
+                       check=True, timeout=LONGEST_S)
+        return file
+
+    def test_keys_mouse_and_drop(self):
+        volume = self.volume()
+        window = self.window(volume, size="640x480")
+        first = window.last()
+        self.assertEqual((first["grid"], first["view"], first["channel"]), ("fluence", "sheet", "all"))
+        seen = [window.picture()]
+        self.assertGreater(seen[0].spread(), 8.0)
+
+        def changed(where, since):
+            window.wait("frame", where, since)
+            end = time.monotonic() + 10.0
+            while window.picture().distance(seen[-1]) <= 0.05:
+                self.assertLess(time.monotonic(), end, f"nothing has changed: {window.last()}")
+            seen.append(window.picture())
+
+        x, y, z = first["cell"]
+        changed(lambda e: e["cell"] == [x + 1, y, z], window.key("Right"))
+        changed(lambda e: e["cell"] == [x + 1, y, z + 1], window.key("Prior"))
+        changed(lambda e: e["channel"] == "luminance", window.key("c"))
+        changed(lambda e: e["orbit"][0] != first["orbit"][0], window.key("d"))
+        changed(lambda e: e["grid"] == "radiance" and e["direction"] == [15.0, 0.0], window.key("bracketright"))
+        changed(lambda e: e["view"] == "orbit", window.key("5"))
+        yaw = window.last()["orbit"][0]
+        window.pointer(300, 200)
+        window.tool("mousedown", 1)
+        mark = window.mark()
+        for step in range(40):  # what happens within one slow frame is one event
+            window.pointer(300 + 3 * step, 200)
+            if window.find("frame", lambda e: e["orbit"][0] != yaw, mark):
+                break
+            time.sleep(0.05)
+        window.tool("mouseup", 1)
+        changed(lambda e: e["orbit"][0] != yaw, mark)
+        changed(lambda e: e["view"] == "z", window.key("4"))
+        window.pointer(320, 200)  # the middle of 12 x 12 cells
+        mark = window.mark()
+        window.tool("click", 1)
+        window.wait("frame", lambda e: e["cell"][:2] in ([5, 5], [6, 5], [5, 6], [6, 6]), mark)
+        mark = window.key("p")
+        window.wait("frame", lambda e: e["message"].startswith("wrote"), mark)
+        self.assertTrue((self.folder / "cornell-001.png").exists())
+        other = self.folder / "other.vdb"
+        shutil.copy(volume, other)
+        mark = window.mark()
+        self.assertEqual(window.hand("drop", other).returncode, 0)
+        window.wait("frame", lambda e: e["file"] == str(other), mark)
+        self.assertEqual(window.quit(), 0)
+
+    def test_headless(self):
+        volume = self.volume()
+        done = self.demo(volume, "--headless", "-o", "sheet.png", "--size", "400x300")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        sheet = read_png(self.folder / "sheet.png")
+        self.assertEqual((sheet.width, sheet.height), (400, 300))
+        self.assertGreater(sheet.spread(), 8.0)
+        pictures = [sheet]
+        for k, more in enumerate((["--view", "orbit"], ["--do", "grid radiance", "--do", "direction 0,-90"],
+                                  ["--do", "grid radiance", "--do", "direction 0,90"], ["--do", "channel red"],
+                                  ["--do", "grid normal"], ["--do", "slice z=2"], ["--view", "orbit", "--do", "cut"])):
+            done = self.demo(volume, "--headless", "-o", f"{k}.png", "--size", "400x300", *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            pictures.append(read_png(self.folder / f"{k}.png"))
+            self.assertGreater(min(pictures[-1].distance(p) for p in pictures[:-1]), 0.2, more)
+        for arguments, code, parts in ((["-o", "x.exr"], 2, [".png"]), (["-o", "x.png", "--do", "grid none"], 2, ["fluence"]),
+                                       (["-o", "x.png", scene("cornell")], 2, ["alone"]), (["-o", "no/x.png"], 6, ["no/x.png"])):
+            done = self.demo(volume, "--headless", *arguments)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assert_one_line(done.stderr, *parts)
+        (self.folder / "bad.vdb").write_bytes(b"no volume")
+        done = self.demo("bad.vdb", "--headless", "-o", "x.png")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assert_one_line(done.stderr, "bad.vdb")
+        # Without OpenGL, too.
+        nothing = {**os.environ, "__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent", "DISPLAY": ""}
+        self.assertEqual(self.demo(volume, "--headless", "-o", "x.png", env=nothing).returncode, 0)
+
+
 class Views(WindowCase):
     KEYS = {"1": "picture", "2": "direct", "3": "first_bounce", "4": "higher_bounces", "5": "emission", "6": "albedo",
             "7": "normals", "8": "depth", "9": "voxels", "0": "coverage", "shift+1": "lobe", "shift+2": "lights",

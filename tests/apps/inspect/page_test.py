@@ -98,7 +98,29 @@ def keys_and_pointer(browser, where):
     turned = browser.run(SHOWN)
     check(turned["orbit"][0] != still["orbit"][0], f"{where}: an arrow key turns the cells")
     browser.press("+")
-    check(browser.run(SHOWN)["orbit"][0] != turned["orbit"][0], f"{where}: + comes nearer")
+    nearer = browser.run(SHOWN)
+    check(nearer["orbit"][0] != turned["orbit"][0], f"{where}: + comes nearer")
+    for what, events in (("a drag", "['pointermove', { buttons: 1, movementX: 40, movementY: 10 }]"), ("the wheel", "['wheel', { deltaY: 1 }]")):
+        browser.run(f"""
+            const [kind, more] = {events};
+            const Kind = kind === 'wheel' ? WheelEvent : PointerEvent;
+            document.getElementById('orbit').dispatchEvent(new Kind(kind, {{ bubbles: true, cancelable: true, ...more }}));
+            arguments[arguments.length - 1](1);""")
+        after = browser.run(SHOWN)
+        check(after["orbit"][0] != nearer["orbit"][0], f"{where}: {what} in space")
+        nearer = after
+
+
+def sliders(browser, where):
+    """One for each slice: it goes to its slice, by a value and by a key."""
+    for axis, name in enumerate("xyz"):
+        before = browser.run(SHOWN)
+        moved = choose(browser, name, "2")
+        check(numbers(moved["readout"])[axis] == 2, f"{where}: slider {name}: {moved['readout']}")
+        check(moved["slices"][axis] != before["slices"][axis], f"{where}: slider {name} shows another slice")
+        focus(browser, f"[name={name}]")
+        browser.press(RIGHT)
+        check(numbers(browser.run(SHOWN)["readout"])[axis] == 3, f"{where}: the arrow key on slider {name}")
 
 
 def channels_and_directions(browser, where):
@@ -136,6 +158,7 @@ def use(browser, page, grids, where, width, dark):
     check((numbers(first["back"])[0] < 100) == dark, f"{where}: background {first['back']}")
     figures_agree(browser, grids, where)
     keys_and_pointer(browser, where)
+    sliders(browser, where)
     channels_and_directions(browser, where)
     console = [text for text in browser.console() if "willReadFrequently" not in text]  # of this test's own look at pixels
     check(not console, f"{where}: console: {console}")
