@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "propagation/bounces_cpu.h"
-#include "propagation/side_loops.h"
 
 namespace volgi {
 
@@ -11,8 +10,8 @@ namespace {
 using Powers = std::vector<glm::vec4>;
 
 /// <a,b> = sum of a b / (f tau), per band; what sides that return nothing send is not looked for.
-glm::dvec3 product(const Powers& response, const Powers& a, const Powers& b) {
-  return sum_over_sides(a.size(), [&](size_t i) {
+glm::dvec3 product(const SideSums& sums, const Powers& response, const Powers& a, const Powers& b) {
+  return sums([&](size_t i) {
     glm::dvec3 term(0.0);
     for (int band = 0; band < 3; ++band) {
       const double weight = double(response[i][band]) * double(response[i].w);
@@ -23,8 +22,8 @@ glm::dvec3 product(const Powers& response, const Powers& a, const Powers& b) {
 }
 
 /// <d, (I - fK) d> where y = K d.
-glm::dvec3 curvature(const Powers& response, const Powers& d, const Powers& y) {
-  return sum_over_sides(d.size(), [&](size_t i) {
+glm::dvec3 curvature(const SideSums& sums, const Powers& response, const Powers& d, const Powers& y) {
+  return sums([&](size_t i) {
     glm::dvec3 term(0.0);
     for (int band = 0; band < 3; ++band) {
       const double f = double(response[i][band]);
@@ -35,8 +34,8 @@ glm::dvec3 curvature(const Powers& response, const Powers& d, const Powers& y) {
   });
 }
 
-glm::dvec3 magnitude(const Powers& powers) {
-  return sum_over_sides(powers.size(), [&](size_t i) { return glm::abs(glm::dvec3(powers[i])); });
+glm::dvec3 magnitude(const SideSums& sums, const Powers& powers) {
+  return sums([&](size_t i) { return glm::abs(glm::dvec3(powers[i])); });
 }
 
 glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
@@ -64,7 +63,7 @@ void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& 
     sent_[i] = source_[i] + q[i];
   });
   const glm::dvec3 before = glm::dvec3(report.sent);
-  if (sum_over_sides(count, [&](size_t i) { return glm::dvec3(sent_[i]); }) == glm::dvec3(0.0)) {
+  if (sums_([&](size_t i) { return glm::dvec3(sent_[i]); }) == glm::dvec3(0.0)) {
     std::fill(p.begin(), p.end(), glm::vec4(0.0f));
     report.converged = true;
     return;
@@ -75,12 +74,11 @@ void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& 
     q[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(p[i]), 0.0f) - q[i];
     d[i] = q[i];
   });
-  glm::dvec3 qq = product(response_, q, q);
+  glm::dvec3 qq = product(sums_, response_, q, q);
   for (int pass = 1;; ++pass) {
-    const glm::vec3 next(magnitude(q));
-    report.sent = glm::vec3(before + sum_over_sides(count, [&](size_t i) {
-                              return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]);
-                            }));
+    const glm::vec3 next(magnitude(sums_, q));
+    report.sent = glm::vec3(
+        before + sums_([&](size_t i) { return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]); }));
     report.converged = rules.orders_ended(next, report.sent);
     if (report.converged || pass == limit) {
       report.left += next;
@@ -89,14 +87,15 @@ void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& 
     carry(d, rules, report);
     const Powers& y = received_;
     // No bounce is taken to lose less than kMinLoss: a closed white room has no answer.
-    const glm::dvec3 bend = glm::max(curvature(response_, d, y), BounceRules::kMinLoss * product(response_, d, d));
+    const glm::dvec3 bend =
+        glm::max(curvature(sums_, response_, d, y), BounceRules::kMinLoss * product(sums_, response_, d, d));
     const glm::vec4 alpha(quotient(qq, bend), 0.0f);
     for_each_side(count, [&](size_t i) {
       p[i] += alpha * y[i];
       q[i] -= alpha * (d[i] - glm::vec4(glm::vec3(response_[i]) * glm::vec3(y[i]), 0.0f));
     });
     const glm::dvec3 last = qq;
-    qq = product(response_, q, q);
+    qq = product(sums_, response_, q, q);
     const glm::vec4 beta(quotient(qq, last), 0.0f);
     for_each_side(count, [&](size_t i) { d[i] = q[i] + beta * d[i]; });
   }

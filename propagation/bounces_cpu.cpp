@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "propagation/side_loops.h"
-
 namespace volgi {
 
 using shared::Side;
 
 namespace {
-
-glm::dvec3 total(const std::vector<glm::vec4>& powers) {
-  return sum_over_sides(powers.size(), [&](size_t i) { return glm::dvec3(powers[i]); });
-}
 
 glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
   return shared::side_sent_power(glm::vec3(flux), side.albedo, side.area_m2, side.face_m2);
@@ -23,6 +17,7 @@ glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
 
 void BouncesCpu::make_room(const Run& run) {
   const size_t count = run.voxels.side_count();
+  sums_.set(run.voxels, ranks_);
   const bool continues = run.rules.continues() && received_indirect_.size() == count;
   if (!continues) {
     received_indirect_.assign(count, glm::vec4(0.0f));
@@ -149,7 +144,7 @@ void BouncesCpu::send_all() {
 
 /// P becomes what has been received. @return what that changes of what sides send [W].
 glm::dvec3 BouncesCpu::publish() {
-  const glm::dvec3 change = sum_over_sides(received_.size(), [&](size_t i) {
+  const glm::dvec3 change = sums_([&](size_t i) {
     return glm::dvec3(response_[i]) * glm::abs(glm::dvec3(received_[i]) - glm::dvec3(received_indirect_[i]));
   });
   received_indirect_.swap(received_);

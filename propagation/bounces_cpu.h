@@ -4,13 +4,14 @@
 
 #include "propagation/bounce_rules.h"
 #include "propagation/side_flux.h"
+#include "propagation/side_loops.h"
 #include "propagation/transport_cpu.h"
 
 namespace volgi {
 
 /// Applies a transport operator on the CPU: order by order, or to all orders at once by conjugate gradients; twin of
 /// BouncesGl (docs/theory.md#orders). The last run's answer is kept, and is where the next one starts where the rules
-/// say so. No result depends on the number of threads. Memory: six powers (16 bytes) a side.
+/// say so. No result depends on the number of threads, nor on that of ranks. Memory: six powers (16 bytes) a side.
 ///
 /// Conjugate gradients: with K from sent to received power, f the returned fraction and e what the sources send, the
 /// power P that sides receive solves P = K(e + fP). S = K/tau of the receiving side is symmetric, so I - fK is
@@ -20,7 +21,9 @@ namespace volgi {
 /// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
 class BouncesCpu {
  public:
-  explicit BouncesCpu(std::unique_ptr<TransportCpu> transport) : transport_(std::move(transport)) {}
+  /// @param ranks  that the voxels are parts of (the transport's); null: there is one.
+  explicit BouncesCpu(std::unique_ptr<TransportCpu> transport, const Ranks* ranks = nullptr)
+      : transport_(std::move(transport)), ranks_(ranks) {}
 
   /// @throws Error(usage) as BounceRules::check.
   /// @param sky  streams in with the arrival of emission, and is arrival alike; null: none.
@@ -59,7 +62,13 @@ class BouncesCpu {
   void begin_order(const Run& run);
   void amortised(const Run& run, BounceReport& report);
 
+  glm::dvec3 total(const Powers& powers) const {
+    return sums_([&](size_t i) { return glm::dvec3(powers[i]); });
+  }
+
   std::unique_ptr<TransportCpu> transport_;
+  const Ranks* ranks_;
+  SideSums sums_;
   Powers received_direct_, received_indirect_;
   Powers response_;                  // rgb: returned fraction f, w: coverage tau
   Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]
@@ -73,6 +82,8 @@ class BouncesCpu {
 struct SideIrradiance {
   std::vector<glm::vec4> direct, indirect;  // rgb; w is 1
 };
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces);
+/// @param halo  of a rank's voxels: what others have at the sides beside its own; null: there are no others.
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
+                               const SideHalo* halo = nullptr);
 
 }  // namespace volgi

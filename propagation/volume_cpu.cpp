@@ -72,12 +72,14 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
          ConservativeTransportCpu::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
-VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
+VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
     : scene_(scene),
       options_(options),
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
       rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
+  if (ranks != nullptr && ranks->count() > 1)
+    ranks_.emplace(RanksOfVolume{*ranks, Decomposition(leaf_blocks(grid_), ranks->count())});
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   if (options.memory_limit)
@@ -96,8 +98,8 @@ bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   const bool white = may_have_white_pockets(rules_.largest_albedo);
-  VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
-  if (white) pocket_cells_ = bound_white_pockets(fresh);
+  VoxelGrid fresh = ranks_ ? voxelize_cpu(scene_, grid_, mipmaps_, *ranks_) : voxelize_cpu(scene_, grid_, mipmaps_);
+  if (white) pocket_cells_ = bound_white_pockets(fresh, ranks());
   const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
@@ -106,17 +108,18 @@ void VolumeCpu::voxelize() {
   const bool only_sides_count = !moved || !(coarse || papers);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
+  if (ranks_) halo_.emplace(*ranks_, voxels_);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (coarse && white) bound_white_pockets(half_voxels_);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
   } else {
-    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr);
+    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks());
     if (bounces_) {
       bounces_->set_transport(std::move(transport));
     } else {
-      bounces_ = std::make_unique<BouncesCpu>(std::move(transport));
+      bounces_ = std::make_unique<BouncesCpu>(std::move(transport), ranks_ ? &ranks_->ranks : nullptr);
     }
   }
 }
@@ -139,7 +142,7 @@ void VolumeCpu::propagate() {
 
 void VolumeCpu::irradiate() {
   if (!bounces_) return;
-  irradiance_ = side_irradiance(voxels_, flux_, *bounces_);
+  irradiance_ = side_irradiance(voxels_, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
   if (options_.source == VolumeOptions::Source::lights || !flux_.emits) return;
   // The first arrival in the volume is emission's bounce 1.
   for (size_t i = 0; i < irradiance_.indirect.size(); ++i) {
@@ -149,7 +152,8 @@ void VolumeCpu::irradiate() {
 }
 
 const CellVolumes& VolumeCpu::cells() {
-  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
+  const BlockBox part = ranks_ ? ranks_->part() : BlockBox{glm::ivec3(0), leaf_blocks(grid_)};
+  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_, part);
   return cells_;
 }
 

@@ -22,9 +22,12 @@ std::uint32_t face_bits(const std::vector<shared::Side>& sides, size_t first, si
 VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides)
     : grid_(grid),
       blocks_(leaf_blocks(grid)),
+      held_{glm::ivec3(0), blocks_},
+      part_(held_),
       sides_(std::move(sides)),
+      part_sides_(sides_.size()),
       tree_(vdb::make_int64_tree()),
-      leaves_(size_t(blocks_.x) * size_t(blocks_.y) * size_t(blocks_.z), nullptr) {
+      leaves_(held_.count(), nullptr) {
   std::vector<Leaf*> writable(leaves_.size(), nullptr);
   for (size_t first = 0, last = 0; first < sides_.size(); first = last) {
     while (last < sides_.size() && sides_[last].cell == sides_[first].cell) ++last;
@@ -37,16 +40,26 @@ VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides)
   point_to_cells();
 }
 
-VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves)
+VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves,
+                     const BlockBox& held, const BlockBox& part, size_t part_sides)
     : grid_(grid),
       blocks_(leaf_blocks(grid)),
+      held_(held),
+      part_(part),
       sides_(std::move(sides)),
+      part_sides_(part_sides),
       tree_(vdb::make_int64_tree()),
       leaves_(leaves.begin(), leaves.end()) {
   for (Leaf* leaf : leaves) {
     if (leaf != nullptr) tree_->addLeaf(leaf);
   }
   point_to_cells();
+}
+
+VoxelGrid::VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves)
+    : VoxelGrid(grid, std::move(sides), leaves, {glm::ivec3(0), leaf_blocks(grid)}, {glm::ivec3(0), leaf_blocks(grid)},
+                0) {
+  part_sides_ = sides_.size();
 }
 
 void VoxelGrid::point_to_cells() {
