@@ -72,6 +72,20 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
          ConservativeTransportCpu::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  const glm::ivec3 around(0, 1, 1);
+  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
+  const ExpectedSides own = expected_sides(scene, grid, part), known = expected_sides(scene, grid, held);
+  size_t bytes = voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(held, known.sides, known.blocks) +
+                 2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
+                 side_irradiance_bytes(own.sides);
+  if (options.scheme.scheme == Scheme::ordinates)
+    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, options.scheme), own);
+  return bytes + ConservativeTransportCpu::bytes_for(ranks, options.scheme.sh_order, own);
+}
+
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
     : scene_(scene),
       options_(options),
@@ -80,10 +94,14 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
       mipmaps_(voxelization_mipmaps(scene)) {
   if (ranks != nullptr && ranks->count() > 1)
     ranks_.emplace(RanksOfVolume{*ranks, Decomposition(leaf_blocks(grid_), ranks->count())});
+  if (ranks_) refuse_of_ranks(options);
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   if (options.memory_limit)
-    refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)), "CPU");
+    refuse_above_limit(options,
+                       ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
+                              : bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)),
+                       "CPU");
 }
 
 void VolumeCpu::scene_moved() {
@@ -93,7 +111,7 @@ void VolumeCpu::scene_moved() {
 
 VolumeCpu::~VolumeCpu() = default;
 
-bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
+bool VolumeCpu::has_coarse_part() const { return !ranks_ && volgi::has_coarse_part(options_.scheme, grid_); }
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);

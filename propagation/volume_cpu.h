@@ -75,5 +75,8 @@ class VolumeCpu {
 /// refused before it is taken: the sum of what its parts say of themselves.
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const ExpectedSides& expected);
+/// The same of the volume's part that this rank has.
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const RanksOfVolume& ranks);
 
 }  // namespace volgi

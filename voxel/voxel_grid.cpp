@@ -67,13 +67,12 @@ void VoxelGrid::point_to_cells() {
   for (const Leaf* leaf : leaves_) leaf_cells_.push_back(leaf == nullptr ? nullptr : leaf->buffer().data());
 }
 
-size_t VoxelGrid::bytes_for(const Grid& grid, size_t sides, size_t leaves) {
+size_t VoxelGrid::bytes_for(const BlockBox& held, size_t sides, size_t leaves) {
   CellSidesTree one(0);
   if (leaves > 0) one.touchLeaf(openvdb::Coord(0, 0, 0));
-  const glm::ivec3 blocks = leaf_blocks(grid);
-  const size_t all = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
+  const size_t all = held.count();
   // Nodes of 16^3 leaves come with their leaves; a grid of at most 256 cells has eight of them.
-  const glm::ivec3 nodes = (blocks + 15) / 16;
+  const glm::ivec3 nodes = (held.last + 15) / 16 - held.first / 16;
   const size_t more_nodes = size_t(nodes.x) * size_t(nodes.y) * size_t(nodes.z) - 1;
   using Node = CellSidesTree::RootNodeType::ChildNodeType::ChildNodeType;
   const size_t tree = one.memUsage() + (leaves > 0 ? (leaves - 1) * Leaf(openvdb::Coord(), 0).memUsage() : 0);

@@ -70,7 +70,10 @@ class VoxelGrid {
 
   size_t bytes() const;
   /// What bytes() will be of so many sides in so many leaves.
-  static size_t bytes_for(const Grid& grid, size_t sides, size_t leaves);
+  static size_t bytes_for(const BlockBox& held, size_t sides, size_t leaves);
+  static size_t bytes_for(const Grid& grid, size_t sides, size_t leaves) {
+    return bytes_for(BlockBox{glm::ivec3(0), leaf_blocks(grid)}, sides, leaves);
+  }
 
  private:
   void point_to_cells();

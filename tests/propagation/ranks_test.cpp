@@ -140,6 +140,22 @@ TEST(Ranks, WhiteMazesAndPlainOrders) {
   }
 }
 
+// Passes over a volume whose parts show each other their outermost cells after each.
+TEST(Ranks, ConservativeBitEqualToOne) {
+  for (const char* name : {"cornell", "room"}) {
+    const Scene scene = data_scene(name);
+    VolumeOptions options;
+    options.scheme.scheme = Scheme::conservative;
+    options.scheme.coarse_start = false;
+    options.grid_cells = 36;
+    options.bounces = 1;
+    const Answer one = answer_of(scene, options, 1);
+    EXPECT_GT(one.report.passes, 50);
+    for (const int ranks : {2, 3, 8})
+      expect_same(one, answer_of(scene, options, ranks), fmt::format("{}, {}", name, ranks));
+  }
+}
+
 // One that throws does not leave the others waiting.
 TEST(Ranks, OneThatFailsEndsAll) {
   EXPECT_THROW(run_ranks_in_threads(3,
