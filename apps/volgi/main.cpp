@@ -29,6 +29,7 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
   app::add_reference_command(app, exit_code);
   app::add_compare_command(app, exit_code);
   app::add_export_command(app, exit_code);
+  app::add_merge_command(app, exit_code);
   app::add_inspect_command(app, exit_code);
 #ifdef VOLGI_HAS_GL
   app::add_crosscheck_command(app, exit_code);
