@@ -48,6 +48,33 @@ glm::dvec3 quotient(glm::dvec3 a, glm::dvec3 b) {
 
 }  // namespace
 
+/// The first bounce, and what is left of it. @return  false: nothing sends.
+bool BouncesCpu::begin_descent(const Run& run, glm::vec4 share, Descent& c, BounceReport& report) {
+  const size_t count = source_.size();
+  Powers& p = received_indirect_;
+  c.q.resize(count);
+  c.d.resize(count);
+  c.before = glm::dvec3(report.sent);
+  // v is what the last answer makes sides send; q = f P - v, with P = K(e + v).
+  for_each_side(count, [&](size_t i) {
+    c.q[i] = glm::vec4(glm::vec3(response_[i]), 0.0f) * share * p[i];
+    sent_[i] = source_[i] + c.q[i];
+  });
+  if (sums_([&](size_t i) { return glm::dvec3(sent_[i]); }) == glm::dvec3(0.0)) {
+    std::fill(p.begin(), p.end(), glm::vec4(0.0f));
+    report.converged = true;
+    return false;
+  }
+  carry(sent_, run.rules, report);
+  p.swap(received_);
+  for_each_side(count, [&](size_t i) {
+    c.q[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(p[i]), 0.0f) - c.q[i];
+    c.d[i] = c.q[i];
+  });
+  c.qq = product(sums_, response_, c.q, c.q);
+  return true;
+}
+
 void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const size_t count = source_.size();
@@ -55,49 +82,38 @@ void BouncesCpu::solve_conjugate(const Run& run, glm::vec4 share, BounceReport& 
       std::min(rules.iterations.value_or(BounceRules::kMaxConjugatePasses), BounceRules::kMaxConjugatePasses);
   Powers& p = received_indirect_;
   report.conjugate_gradients = true;
-
-  // v is what the last answer makes sides send; q = f P - v, with P = K(e + v).
-  Powers q(count), d(count);
-  for_each_side(count, [&](size_t i) {
-    q[i] = glm::vec4(glm::vec3(response_[i]), 0.0f) * share * p[i];
-    sent_[i] = source_[i] + q[i];
-  });
-  const glm::dvec3 before = glm::dvec3(report.sent);
-  if (sums_([&](size_t i) { return glm::dvec3(sent_[i]); }) == glm::dvec3(0.0)) {
-    std::fill(p.begin(), p.end(), glm::vec4(0.0f));
-    report.converged = true;
+  Descent c;
+  if (resumed_) {
+    c = {std::move(resumed_->residual), std::move(resumed_->direction), resumed_->state.before,
+         resumed_->state.residual};
+  } else if (!begin_descent(run, share, c, report)) {
     return;
   }
-  carry(sent_, rules, report);
-  p.swap(received_);
-  for_each_side(count, [&](size_t i) {
-    q[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(p[i]), 0.0f) - q[i];
-    d[i] = q[i];
-  });
-  glm::dvec3 qq = product(sums_, response_, q, q);
-  for (int pass = 1;; ++pass) {
-    const glm::vec3 next(magnitude(sums_, q));
-    report.sent = glm::vec3(
-        before + sums_([&](size_t i) { return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]); }));
+  for (int pass = report.orders - (run.has_emission ? 1 : 0);; ++pass) {
+    keep(run, report, c.q, c.d, c.before, c.qq);
+    const glm::vec3 next(magnitude(sums_, c.q));
+    report.sent = glm::vec3(c.before + sums_([&](size_t i) {
+                              return glm::dvec3(source_[i]) + glm::dvec3(response_[i]) * glm::dvec3(p[i]);
+                            }));
     report.converged = rules.orders_ended(next, report.sent);
     if (report.converged || pass == limit) {
       report.left += next;
       break;
     }
-    carry(d, rules, report);
+    carry(c.d, rules, report);
     const Powers& y = received_;
     // No bounce is taken to lose less than kMinLoss: a closed white room has no answer.
     const glm::dvec3 bend =
-        glm::max(curvature(sums_, response_, d, y), BounceRules::kMinLoss * product(sums_, response_, d, d));
-    const glm::vec4 alpha(quotient(qq, bend), 0.0f);
+        glm::max(curvature(sums_, response_, c.d, y), BounceRules::kMinLoss * product(sums_, response_, c.d, c.d));
+    const glm::vec4 alpha(quotient(c.qq, bend), 0.0f);
     for_each_side(count, [&](size_t i) {
       p[i] += alpha * y[i];
-      q[i] -= alpha * (d[i] - glm::vec4(glm::vec3(response_[i]) * glm::vec3(y[i]), 0.0f));
+      c.q[i] -= alpha * (c.d[i] - glm::vec4(glm::vec3(response_[i]) * glm::vec3(y[i]), 0.0f));
     });
-    const glm::dvec3 last = qq;
-    qq = product(sums_, response_, q, q);
-    const glm::vec4 beta(quotient(qq, last), 0.0f);
-    for_each_side(count, [&](size_t i) { d[i] = q[i] + beta * d[i]; });
+    const glm::dvec3 last = c.qq;
+    c.qq = product(sums_, response_, c.q, c.q);
+    const glm::vec4 beta(quotient(c.qq, last), 0.0f);
+    for_each_side(count, [&](size_t i) { c.d[i] = c.q[i] + beta * c.d[i]; });
   }
   // The answer is not negative, so this takes it nearer where the last steps have overshot.
   for_each_side(count, [&](size_t i) { p[i] = glm::max(p[i], 0.0f); });

@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "propagation/bounce_checkpoint.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/side_flux.h"
 #include "propagation/side_loops.h"
@@ -29,6 +31,8 @@ class BouncesCpu {
   /// @param sky  streams in with the arrival of emission, and is arrival alike; null: none.
   BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
                    const Sky* sky = nullptr);
+  /// Later runs keep their state there and go on from one that is there; null: none. Not amortised or warm ones.
+  void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
   /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
   void set_transport(std::unique_ptr<TransportCpu> transport);
 
@@ -55,9 +59,18 @@ class BouncesCpu {
   void arrival_of_emission(const Run& run, BounceReport& report);
   glm::vec4 set_source(const Run& run);
   void orders(const Run& run, int limit, BounceReport& report);
+  bool go_on(const Run& run, BounceReport& report);
+  void keep(const Run& run, const BounceReport& report, const Powers& residual, const Powers& direction,
+            glm::dvec3 before = {}, glm::dvec3 qq = {});
   void send_all();
   glm::dvec3 publish();
   void renewals(const Run& run, glm::vec4 share, BounceReport& report);
+  /// Conjugate gradients between two passes.
+  struct Descent {
+    Powers q, d;                      // residual, direction
+    glm::dvec3 before{0.0}, qq{0.0};  // sent by emission [W]; <q,q>
+  };
+  bool begin_descent(const Run& run, glm::vec4 share, Descent& c, BounceReport& report);
   void solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report);
   void begin_order(const Run& run);
   void amortised(const Run& run, BounceReport& report);
@@ -69,6 +82,14 @@ class BouncesCpu {
   std::unique_ptr<TransportCpu> transport_;
   const Ranks* ranks_;
   SideSums sums_;
+  BounceCheckpoint* checkpoint_ = nullptr;
+  /// Where a run has gone on from.
+  struct Resumed {
+    BounceState state;
+    Powers residual, direction;
+  };
+  std::optional<Resumed> resumed_;
+  BounceState::Of state_of_;  // this run's
   Powers received_direct_, received_indirect_;
   Powers response_;                  // rgb: returned fraction f, w: coverage tau
   Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]

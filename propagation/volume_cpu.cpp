@@ -149,6 +149,7 @@ void VolumeCpu::light_in(SideFlux flux) {
 
 void VolumeCpu::propagate() {
   if (bounces_) {
+    bounces_->set_checkpoint(checkpoint_);
     report_ = bounces_->run(voxels_, flux_, flux_.emits, rules_, streaming_sky(scene_, options_));
     return;
   }

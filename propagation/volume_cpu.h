@@ -28,6 +28,10 @@ class VolumeCpu {
   /// The scene has moved within the same grid, in place. Materials, textures and images must be the same.
   void scene_moved();
 
+  /// Where propagate() keeps its state and goes on from (BouncesCpu::set_checkpoint); must outlive this. Schemes that
+  /// carry sides.
+  void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
+
   // In this order:
   void voxelize();
   /// @param flux  of the sides of voxels().
@@ -68,6 +72,7 @@ class VolumeCpu {
   SideIrradiance irradiance_;
   BounceReport report_;
   size_t pocket_cells_ = 0;
+  BounceCheckpoint* checkpoint_ = nullptr;
   bool moved_ = false;  // since the last voxelization
 };
 

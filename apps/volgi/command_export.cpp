@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "apps/volgi/commands.h"
@@ -16,6 +17,7 @@
 #include "core/log.h"
 #include "core/progress.h"
 #include "core/sky.h"
+#include "propagation/bounce_checkpoint.h"
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/ordinates.h"
 #include "propagation/volume_cpu.h"
@@ -36,6 +38,8 @@ struct ExportCommand {
   ReadingOptions file;
   std::string stage = "radiance", backend = "auto";
   bool quiet = false, parts = false;
+  std::filesystem::path checkpoint;  // folder; empty: none
+  int checkpoint_every = 1;
 
   bool has_radiance() const { return stage == "radiance"; }
   int run() const;
@@ -164,6 +168,13 @@ int ExportCommand::run() const {
     warn_once(scene.name + ": only --scheme ordinates carries the sky's light; it is left out");
   VolumeCpu computed(scene, options, program_ranks());
 
+  std::optional<BounceCheckpoint> kept;
+  if (!checkpoint.empty() && has_radiance()) {
+    if (!carries_sides(options.scheme.scheme))
+      throw Error(ExitCode::usage, "--checkpoint: the papers' schemes have no bounces to go on from");
+    kept.emplace(checkpoint, checkpoint_every, program_ranks());
+    computed.set_checkpoint(&*kept);
+  }
   Progress progress("export", has_radiance() ? 5 : 2);
   if (has_radiance()) {
     computed.voxelize();
@@ -246,6 +257,15 @@ void add_export_command(CLI::App& app, int& exit_code) {
         const bool finite = CLI::detail::lexical_cast(text, time) && std::isfinite(time);
         return finite ? std::string() : fmt::format("'{}' is not a finite number", text);
       })
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--checkpoint", options->checkpoint,
+          "folder in which the state of the bounces is kept; the same command goes on from it, as any number of "
+          "ranks, to the same bytes")
+      ->type_name("DIR");
+  command->add_option("--checkpoint-every", options->checkpoint_every, "passes over the volume between two states")
+      ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   command->add_flag("--parts", options->parts,
                     "of several ranks: leave OUT.RANK.vdb of each, which `volgi merge` makes one file of");

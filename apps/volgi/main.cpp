@@ -37,6 +37,8 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
   app::add_report_command(app, exit_code);
 #endif
   try {
+    const std::string command = argc > 1 ? argv[1] : "";
+    if (command != "export" && command != "render" && command != "bench") app::refuse_several_ranks(command.c_str());
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);
