@@ -38,7 +38,8 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
 #endif
   try {
     const std::string command = argc > 1 ? argv[1] : "";
-    if (command != "export" && command != "render" && command != "bench") app::refuse_several_ranks(command.c_str());
+    if (!command.starts_with("-") && command != "export" && command != "render" && command != "bench")
+      app::refuse_several_ranks(command.c_str());
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);

@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
-#include <sstream>
 #include <thread>
 
 #include "apps/volgi/failure.h"
@@ -33,6 +39,45 @@ std::optional<MpiRanks>& mpi() {
   static std::optional<MpiRanks> ranks;
   return ranks;
 }
+
+std::vector<pid_t> other_processes;  // ranks on this machine
+sockaddr_un speaker{};               // address that the one who speaks takes; ends with it
+volatile sig_atomic_t ending = 0;
+
+/// Where a rank has died, the launcher ends the others in this way: one of them says so, in one line. Nothing but what
+/// a handler may call.
+extern "C" void ended_by_launcher(int) {
+  if (ending != 0) _exit(128 + SIGTERM);
+  ending = 1;
+  const int own = socket(AF_UNIX, SOCK_DGRAM, 0);
+  if (bind(own, reinterpret_cast<const sockaddr*>(&speaker), sizeof speaker) != 0) _exit(128 + SIGTERM);
+  constexpr char kLine[] = "volgi: ended by mpirun: another rank has died, or the job was stopped\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kLine, sizeof kLine - 1);
+  usleep(200000);  // until the others have seen that it has been said
+  _exit(128 + SIGTERM);
+}
+
+/// From a rank that has said what is wrong.
+extern "C" void end_in_silence(int) { ending = 1; }
+
+void speak_when_ended(const Ranks& ranks) {
+  const std::array<double, 2> own{double(getpid()), double(gethostid())};
+  const std::vector<double> all = ranks.gather(own);
+  for (int rank = 0; rank < ranks.count(); ++rank) {
+    const auto process = pid_t(all[2 * size_t(rank)]);
+    if (rank == ranks.rank() || all[2 * size_t(rank) + 1] != own[1]) continue;
+    other_processes.push_back(process);
+  }
+  speaker.sun_family = AF_UNIX;  // an abstract one: no file
+  const std::string name = fmt::format("volgi-ended-{}", getppid());
+  std::copy(name.begin(), name.end(), speaker.sun_path + 1);
+  struct sigaction action {};
+  action.sa_handler = ended_by_launcher;
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = end_in_silence;
+  sigaction(SIGUSR1, &action, nullptr);
+  ranks.gather({});  // all listen
+}
 #endif
 
 }  // namespace
@@ -42,6 +87,7 @@ ProgramRanks::ProgramRanks([[maybe_unused]] int& argc, [[maybe_unused]] char**& 
 #ifdef VOLGI_HAS_MPI
   mpi().emplace(argc, argv);
   if (!is_first_rank()) set_quiet(true);
+  if (program_ranks() != nullptr) speak_when_ended(*program_ranks());
 #else
   if (launched_ranks() > 1)
     throw Error(ExitCode::usage,
@@ -64,7 +110,9 @@ const Ranks* program_ranks() {
 
 void ProgramRanks::end_all([[maybe_unused]] int code) const {
 #ifdef VOLGI_HAS_MPI
-  if (program_ranks() != nullptr) mpi()->abort(code);
+  if (program_ranks() == nullptr) return;
+  for (const pid_t process : other_processes) kill(process, SIGUSR1);
+  mpi()->abort(code);
 #endif
 }
 
