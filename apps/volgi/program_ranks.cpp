@@ -60,14 +60,7 @@ extern "C" void ended_by_launcher(int) {
 /// From a rank that has said what is wrong.
 extern "C" void end_in_silence(int) { ending = 1; }
 
-void speak_when_ended(const Ranks& ranks) {
-  const std::array<double, 2> own{double(getpid()), double(gethostid())};
-  const std::vector<double> all = ranks.gather(own);
-  for (int rank = 0; rank < ranks.count(); ++rank) {
-    const auto process = pid_t(all[2 * size_t(rank)]);
-    if (rank == ranks.rank() || all[2 * size_t(rank) + 1] != own[1]) continue;
-    other_processes.push_back(process);
-  }
+void speak_when_ended() {
   speaker.sun_family = AF_UNIX;  // an abstract one: no file
   const std::string name = fmt::format("volgi-ended-{}", getppid());
   std::copy(name.begin(), name.end(), speaker.sun_path + 1);
@@ -76,7 +69,15 @@ void speak_when_ended(const Ranks& ranks) {
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = end_in_silence;
   sigaction(SIGUSR1, &action, nullptr);
-  ranks.gather({});  // all listen
+}
+
+void find_other_processes(const Ranks& ranks) {
+  const std::array<double, 2> own{double(getpid()), double(gethostid())};
+  const std::vector<double> all = ranks.gather(own);
+  for (int rank = 0; rank < ranks.count(); ++rank) {
+    const size_t of = 2 * size_t(rank);
+    if (rank != ranks.rank() && all[of + 1] == own[1]) other_processes.push_back(pid_t(all[of]));
+  }
 }
 #endif
 
@@ -85,9 +86,10 @@ void speak_when_ended(const Ranks& ranks) {
 ProgramRanks::ProgramRanks([[maybe_unused]] int& argc, [[maybe_unused]] char**& argv) {
   if (launched_ranks() == 0) return;
 #ifdef VOLGI_HAS_MPI
+  if (launched_ranks() > 1) speak_when_ended();
   mpi().emplace(argc, argv);
   if (!is_first_rank()) set_quiet(true);
-  if (program_ranks() != nullptr) speak_when_ended(*program_ranks());
+  if (program_ranks() != nullptr) find_other_processes(*program_ranks());
 #else
   if (launched_ranks() > 1)
     throw Error(ExitCode::usage,
