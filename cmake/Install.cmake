@@ -10,6 +10,9 @@ install(EXPORT volgiTargets NAMESPACE volgi:: DESTINATION ${VOLGI_PACKAGE_DIR})
 
 # A room's public headers are those in its folder and its leaves.
 set(folders core core/gltf core/visibility reference voxel propagation propagation/light_in propagation/lobes propagation/sweep)
+if(VOLGI_MPI)
+  list(APPEND folders core/mpi)
+endif()
 if(VOLGI_GL)
   list(APPEND folders core/gl)
   file(GLOB_RECURSE leaves CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} screen/*.h)

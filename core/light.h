@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -16,6 +17,12 @@ struct FluxSample {
   glm::vec3 position;  // on the surface, centred frame
   glm::vec3 normal;    // unit, on the side that the light leaves
   glm::vec3 flux;      // power leaving [W]
+};
+
+/// One of many that are shared out: numbers give the order in which they count.
+struct NumberedFluxSample {
+  FluxSample sample;
+  std::uint64_t number;
 };
 
 }  // namespace volgi

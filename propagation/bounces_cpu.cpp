@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "propagation/side_loops.h"
-
 namespace volgi {
 
 using shared::Side;
 
 namespace {
-
-glm::dvec3 total(const std::vector<glm::vec4>& powers) {
-  return sum_over_sides(powers.size(), [&](size_t i) { return glm::dvec3(powers[i]); });
-}
 
 glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
   return shared::side_sent_power(glm::vec3(flux), side.albedo, side.area_m2, side.face_m2);
@@ -23,6 +17,7 @@ glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
 
 void BouncesCpu::make_room(const Run& run) {
   const size_t count = run.voxels.side_count();
+  sums_.set(run.voxels, ranks_);
   const bool continues = run.rules.continues() && received_indirect_.size() == count;
   if (!continues) {
     received_indirect_.assign(count, glm::vec4(0.0f));
@@ -59,7 +54,9 @@ BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool
     return report;
   }
   const int limit = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : BounceRules::kMaxOrders;
-  if (has_emission && limit > 0) arrival_of_emission(run, report);
+  resumed_.reset();
+  const bool resumed = checkpoint_ != nullptr && !rules.continues() && go_on(run, report);
+  if (has_emission && limit > 0 && !resumed) arrival_of_emission(run, report);
   const glm::vec4 share = set_source(run);
   if (rules.conjugate_gradients(transport_->linear())) {
     solve_conjugate(run, share, report);
@@ -69,6 +66,34 @@ BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool
     orders(run, limit, report);
   }
   return report;
+}
+
+/// Takes what the checkpoint has. @return false: nothing.
+bool BouncesCpu::go_on(const Run& run, BounceReport& report) {
+  state_of_ = {};
+  std::array<std::int64_t, 1> sides{std::int64_t(run.voxels.side_count())};
+  if (ranks_ != nullptr) ranks_->add(sides);
+  state_of_.sides = sides[0];
+  state_of_.cells = run.voxels.grid().cells;
+  state_of_.conjugate_gradients = run.rules.conjugate_gradients(transport_->linear());
+  send_emission(run);
+  state_of_.emission = total(sent_);
+  state_of_.punctual = sums_([&](size_t i) { return glm::dvec3(run.flux.punctual[i]); });
+  Resumed found;
+  found.state.of = state_of_;
+  if (!checkpoint_->load(run.voxels, found.state,
+                         {&received_direct_, &received_indirect_, &found.residual, &found.direction}))
+    return false;
+  report = found.state.report;
+  resumed_ = std::move(found);
+  return true;
+}
+
+void BouncesCpu::keep(const Run& run, const BounceReport& report, const Powers& residual, const Powers& direction,
+                      glm::dvec3 before, glm::dvec3 qq) {
+  if (checkpoint_ == nullptr || run.rules.continues()) return;
+  checkpoint_->keep(run.voxels, {report.orders, report, before, qq, state_of_},
+                    {&received_direct_, &received_indirect_, &residual, &direction});
 }
 
 void BouncesCpu::set_transport(std::unique_ptr<TransportCpu> transport) {
@@ -122,7 +147,7 @@ void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
   const BounceRules& rules = run.rules;
   const bool together = transport_->iterative() && rules.together();
   if (rules.iterations && !transport_->iterative()) limit = std::min(limit, *rules.iterations);
-  sent_ = source_;
+  sent_ = resumed_ ? std::move(resumed_->residual) : source_;
   while (report.orders < limit) {
     const glm::vec3 sent(total(sent_));
     const bool ended = !rules.bounces && report.orders > 0 && rules.orders_ended(sent, report.sent);
@@ -138,6 +163,7 @@ void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
       sent_[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(received_[i]), 0.0f);
     });
     if (together) return;
+    keep(run, report, sent_, sent_);
   }
 }
 
@@ -149,7 +175,7 @@ void BouncesCpu::send_all() {
 
 /// P becomes what has been received. @return what that changes of what sides send [W].
 glm::dvec3 BouncesCpu::publish() {
-  const glm::dvec3 change = sum_over_sides(received_.size(), [&](size_t i) {
+  const glm::dvec3 change = sums_([&](size_t i) {
     return glm::dvec3(response_[i]) * glm::abs(glm::dvec3(received_[i]) - glm::dvec3(received_indirect_[i]));
   });
   received_indirect_.swap(received_);

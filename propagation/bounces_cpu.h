@@ -1,16 +1,19 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "propagation/bounce_checkpoint.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/side_flux.h"
+#include "propagation/side_loops.h"
 #include "propagation/transport_cpu.h"
 
 namespace volgi {
 
 /// Applies a transport operator on the CPU: order by order, or to all orders at once by conjugate gradients; twin of
 /// BouncesGl (docs/theory.md#orders). The last run's answer is kept, and is where the next one starts where the rules
-/// say so. No result depends on the number of threads. Memory: six powers (16 bytes) a side.
+/// say so. No result depends on the number of threads, nor on that of ranks. Memory: six powers (16 bytes) a side.
 ///
 /// Conjugate gradients: with K from sent to received power, f the returned fraction and e what the sources send, the
 /// power P that sides receive solves P = K(e + fP). S = K/tau of the receiving side is symmetric, so I - fK is
@@ -20,12 +23,16 @@ namespace volgi {
 /// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
 class BouncesCpu {
  public:
-  explicit BouncesCpu(std::unique_ptr<TransportCpu> transport) : transport_(std::move(transport)) {}
+  /// @param ranks  that the voxels are parts of (the transport's); null: there is one.
+  explicit BouncesCpu(std::unique_ptr<TransportCpu> transport, const Ranks* ranks = nullptr)
+      : transport_(std::move(transport)), ranks_(ranks) {}
 
   /// @throws Error(usage) as BounceRules::check.
   /// @param sky  streams in with the arrival of emission, and is arrival alike; null: none.
   BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
                    const Sky* sky = nullptr);
+  /// Later runs keep their state there and go on from one that is there; null: none. Not amortised or warm ones.
+  void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
   /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
   void set_transport(std::unique_ptr<TransportCpu> transport);
 
@@ -52,14 +59,37 @@ class BouncesCpu {
   void arrival_of_emission(const Run& run, BounceReport& report);
   glm::vec4 set_source(const Run& run);
   void orders(const Run& run, int limit, BounceReport& report);
+  bool go_on(const Run& run, BounceReport& report);
+  void keep(const Run& run, const BounceReport& report, const Powers& residual, const Powers& direction,
+            glm::dvec3 before = {}, glm::dvec3 qq = {});
   void send_all();
   glm::dvec3 publish();
   void renewals(const Run& run, glm::vec4 share, BounceReport& report);
+  /// Conjugate gradients between two passes.
+  struct Descent {
+    Powers q, d;                      // residual, direction
+    glm::dvec3 before{0.0}, qq{0.0};  // sent by emission [W]; <q,q>
+  };
+  bool begin_descent(const Run& run, glm::vec4 share, Descent& c, BounceReport& report);
   void solve_conjugate(const Run& run, glm::vec4 share, BounceReport& report);
   void begin_order(const Run& run);
   void amortised(const Run& run, BounceReport& report);
 
+  glm::dvec3 total(const Powers& powers) const {
+    return sums_([&](size_t i) { return glm::dvec3(powers[i]); });
+  }
+
   std::unique_ptr<TransportCpu> transport_;
+  const Ranks* ranks_;
+  SideSums sums_;
+  BounceCheckpoint* checkpoint_ = nullptr;
+  /// Where a run has gone on from.
+  struct Resumed {
+    BounceState state;
+    Powers residual, direction;
+  };
+  std::optional<Resumed> resumed_;
+  BounceState::Of state_of_;  // this run's
   Powers received_direct_, received_indirect_;
   Powers response_;                  // rgb: returned fraction f, w: coverage tau
   Powers source_, sent_, received_;  // what sides send before bounces, what they send and receive in this order [W]
@@ -73,6 +103,8 @@ class BouncesCpu {
 struct SideIrradiance {
   std::vector<glm::vec4> direct, indirect;  // rgb; w is 1
 };
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces);
+/// @param halo  of a rank's voxels: what others have at the sides beside its own; null: there are no others.
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
+                               const SideHalo* halo = nullptr);
 
 }  // namespace volgi

@@ -65,6 +65,41 @@ Target target_of(const VoxelGrid& voxels, const FluxSample& sample) {
   return {{any_side_near(voxels, sample.position, sample.normal), -1, -1}, {1.0f, 0.0f, 0.0f}};
 }
 
+/// Flux that found no side, over all ranks the same for any number of them.
+class Lost {
+ public:
+  void add(glm::dvec3 flux) {
+    for (size_t band = 0; band < 3; ++band) sums_[band].add(flux[int(band)]);
+  }
+  glm::dvec3 value(const Ranks* ranks) { return SideSums::over_ranks(sums_, ranks); }
+
+ private:
+  std::array<ExactSum, 3> sums_;
+};
+
+/// What a sample gives a side.
+struct Given {
+  std::uint64_t number;  // of the sample
+  int k;                 // of its sides
+  int cell, face;
+  glm::dvec3 flux;
+};
+
+/// All samples in this rank's cells, in order. What lies outside of the grid goes with the cells at its rim.
+std::vector<NumberedFluxSample> samples_of_part(const VoxelGrid& voxels, const RanksOfVolume& ranks,
+                                                std::span<const NumberedFluxSample> samples) {
+  std::vector<std::vector<NumberedFluxSample>> to(size_t(ranks.ranks.count()));
+  for (const NumberedFluxSample& s : samples) {
+    const glm::vec3 point = shared::cell_from_world(voxels.grid(), s.sample.position);
+    const glm::ivec3 cell(glm::clamp(glm::floor(point), glm::vec3(0.0f), glm::vec3(voxels.grid().cells - 1)));
+    to[size_t(ranks.decomposition.owner(cell / kLeafCells))].push_back(s);
+  }
+  std::vector<NumberedFluxSample> here;
+  for (const auto& from : exchange_values(ranks.ranks, to)) here.insert(here.end(), from.begin(), from.end());
+  std::sort(here.begin(), here.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  return here;
+}
+
 }  // namespace
 
 void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost) {
@@ -72,16 +107,52 @@ void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::
   for_each_side(samples.size(), [&](size_t i) { targets[i] = target_of(voxels, samples[i]); });
   // Sides may get thousands of samples each: sums are double.
   std::vector<glm::dvec3> sums(flux.size(), glm::dvec3(0.0));
-  glm::dvec3 found_none(0.0);
+  Lost found_none;
   for (size_t i = 0; i < samples.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       if (targets[i].shares[k] <= 0.0f) continue;
       const int side = targets[i].sides[k];
-      (side < 0 ? found_none : sums[size_t(side)]) += double(targets[i].shares[k]) * glm::dvec3(samples[i].flux);
+      const glm::dvec3 given = double(targets[i].shares[k]) * glm::dvec3(samples[i].flux);
+      if (side < 0) {
+        found_none.add(given);
+      } else {
+        sums[size_t(side)] += given;
+      }
     }
   }
   for_each_side(flux.size(), [&](size_t i) { flux[i] += glm::vec4(sums[i], 0.0f); });
-  lost += glm::vec3(found_none);
+  lost += glm::vec3(found_none.value(nullptr));
+}
+
+void deposit(const VoxelGrid& voxels, const RanksOfVolume& ranks, std::span<const NumberedFluxSample> samples,
+             std::span<glm::vec4> flux, glm::vec3& lost) {
+  const std::vector<NumberedFluxSample> here = samples_of_part(voxels, ranks, samples);
+  std::vector<Target> targets(here.size());
+  for_each_side(here.size(), [&](size_t i) { targets[i] = target_of(voxels, here[i].sample); });
+  std::vector<std::vector<Given>> to(size_t(ranks.ranks.count()));
+  Lost found_none;
+  for (size_t i = 0; i < here.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      if (targets[i].shares[k] <= 0.0f) continue;
+      const glm::dvec3 given = double(targets[i].shares[k]) * glm::dvec3(here[i].sample.flux);
+      if (targets[i].sides[k] < 0) {
+        found_none.add(given);
+        continue;
+      }
+      const shared::Side& side = voxels.sides()[size_t(targets[i].sides[k])];
+      const glm::ivec3 block = shared::cell_coord(voxels.grid(), side.cell) / kLeafCells;
+      to[size_t(ranks.decomposition.owner(block))].push_back({here[i].number, k, side.cell, side.face, given});
+    }
+  }
+  std::vector<Given> all;
+  for (const auto& from : exchange_values(ranks.ranks, to)) all.insert(all.end(), from.begin(), from.end());
+  std::sort(all.begin(), all.end(),
+            [](const Given& a, const Given& b) { return a.number != b.number ? a.number < b.number : a.k < b.k; });
+  std::vector<glm::dvec3> sums(flux.size(), glm::dvec3(0.0));
+  for (const Given& g : all)
+    sums[shared::side_index(voxels.cell_sides(shared::cell_coord(voxels.grid(), g.cell)), g.face)] += g.flux;
+  for_each_side(flux.size(), [&](size_t i) { flux[i] += glm::vec4(sums[i], 0.0f); });
+  lost += glm::vec3(found_none.value(&ranks.ranks));
 }
 
 }  // namespace volgi

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/light.h"
+#include "voxel/side_halo.h"
 #include "voxel/voxel_grid.h"
 
 namespace volgi {
@@ -20,5 +21,11 @@ struct SideFlux {
 /// Deposits samples on the sides that stand for their points (docs/theory.md#light-in): the sum over sides and `lost`
 /// is the sum over samples. Samples are added in their order, whatever the number of threads.
 void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost);
+
+/// All ranks: the same, of samples that are spread over them in any way, to the last bit: the rank that has a sample's
+/// cell looks for its sides, and what belongs to others goes there; each side adds up in the order of the numbers.
+/// @param lost  of all ranks.
+void deposit(const VoxelGrid& voxels, const RanksOfVolume& ranks, std::span<const NumberedFluxSample> samples,
+             std::span<glm::vec4> flux, glm::vec3& lost);
 
 }  // namespace volgi

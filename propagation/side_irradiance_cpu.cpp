@@ -52,10 +52,11 @@ float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, sh
 
 }  // namespace
 
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces) {
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
+                               const SideHalo* halo) {
   const std::vector<shared::Side>& sides = voxels.sides();
-  const size_t count = sides.size();
-  std::vector<glm::vec3> direct(count), indirect(count);  // weighted [W]
+  const size_t count = voxels.side_count();
+  std::vector<glm::vec3> direct(sides.size()), indirect(sides.size());  // weighted [W]
   for_each_side(count, [&](size_t i) {
     const shared::Side& s = sides[i];
     const int axis = shared::face_axis(s.face);
@@ -66,6 +67,10 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
     direct[i] = weighted(bounces.received_direct()[i], flux.emitted[i]);
     indirect[i] = weighted(bounces.received_indirect()[i], flux.punctual[i]);
   });
+  if (halo != nullptr) {
+    halo->fetch(direct);
+    halo->fetch(indirect);
+  }
   SideIrradiance mean{std::vector<glm::vec4>(count), std::vector<glm::vec4>(count)};
   for_each_side(count, [&](size_t i) {
     const glm::ivec3 centre = shared::cell_coord(voxels.grid(), sides[i].cell);

@@ -46,13 +46,14 @@ struct ConservativeTransportCpu::CoarsePart {
 };
 
 ConservativeTransportCpu::ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels,
-                                                   const LobeKernels* kernels)
+                                                   const LobeKernels* kernels, const RanksOfVolume* ranks)
     : voxels_(voxels),
       order_(order),
       kernels_(kernels != nullptr ? *kernels : lobe_kernels(order)),
-      wave_(LeafNumbers(voxels.grid().cells), coefficients(order)),
+      wave_(LeafNumbers(voxels.held(), voxels.part()), coefficients(order), ranks),
       walls_(collect_walls(voxels, wave_.numbers())) {
   assert(order == 1 || order == 2);
+  assert(ranks == nullptr || half_voxels == nullptr);
   if (half_voxels != nullptr) coarse_ = std::make_unique<CoarsePart>(*half_voxels, order);
   // A side sends as one sixth of isotropic light would pass there: six times what comes in of an isotropic lobe.
   std::vector<float> cells(size_t(coefficients(order) * kStride), 0.0f), lobe(cells.size());
@@ -70,6 +71,7 @@ void ConservativeTransportCpu::begin(std::span<const glm::vec4> sent) {
   assert(sent.size() == voxels_.side_count());
   std::vector<int> leaves;
   for (int n = 0; n < numbers().count(); ++n) {
+    if (!numbers().own(n)) continue;
     const LeafWalls* walls = walls_[size_t(n)].get();
     const bool sends = walls != nullptr && std::any_of(walls->sides.begin(), walls->sides.end(), [&](const auto& s) {
                          return glm::vec3(sent[s.side]) != glm::vec3(0.0f);
@@ -234,7 +236,17 @@ RadianceVolume ConservativeTransportCpu::radiance(std::span<const glm::vec4> sen
 }
 
 size_t ConservativeTransportCpu::bytes_for(const Grid& grid, int order, const ExpectedSides& expected) {
-  const LeafNumbers numbers(grid.cells);
+  return bytes_for(LeafNumbers(grid.cells), order, expected);
+}
+
+size_t ConservativeTransportCpu::bytes_for(const RanksOfVolume& ranks, int order, const ExpectedSides& expected) {
+  const BlockBox part = ranks.part();
+  const glm::ivec3 around(0, 1, 1);
+  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, ranks.decomposition.blocks())};
+  return bytes_for(LeafNumbers(held, part), order, expected);
+}
+
+size_t ConservativeTransportCpu::bytes_for(const LeafNumbers& numbers, int order, const ExpectedSides& expected) {
   const size_t rows = expected.sides / 3;  // of 8 cells, on one face: some hold one side, some eight
   return LobeWave::bytes_for(numbers, coefficients(order)) +
          size_t(numbers.count()) * sizeof(std::unique_ptr<LeafWalls>) + expected.blocks * sizeof(LeafWalls) +

@@ -9,6 +9,7 @@
 #include "propagation/lobes/sh_lobes_wave.h"
 #include "propagation/transport_cpu.h"
 #include "voxel/expected_sides.h"
+#include "voxel/side_halo.h"
 
 namespace volgi {
 
@@ -26,8 +27,10 @@ class ConservativeTransportCpu : public TransportCpu {
   /// @param half_voxels  the same scene in cells of twice the edge: carries what is left of a pulse to its end (may be
   /// null).
   /// @param kernels  of an instruction set, for tests; null: the machine's best.
+  /// @param ranks    that the voxels are parts of, which then do all together: each pass follows on what those beside
+  /// sent of the one before. One rank's numbers, without a coarse part. Null: there is one.
   ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels = nullptr,
-                           const LobeKernels* kernels = nullptr);
+                           const LobeKernels* kernels = nullptr, const RanksOfVolume* ranks = nullptr);
   ~ConservativeTransportCpu() override;
 
   void begin(std::span<const glm::vec4> sent) override;
@@ -38,6 +41,8 @@ class ConservativeTransportCpu : public TransportCpu {
   size_t bytes() const override;
   /// What bytes() will be where light is everywhere; without the coarse part.
   static size_t bytes_for(const Grid& grid, int order, const ExpectedSides& expected);
+  /// Of a rank's part.
+  static size_t bytes_for(const RanksOfVolume& ranks, int order, const ExpectedSides& expected);
 
   // The parts of advance(), for tests and benchmarks.
   /// One pass. @param reflect_hits  what sides receive is sent on at once.
@@ -50,6 +55,7 @@ class ConservativeTransportCpu : public TransportCpu {
  private:
   struct CoarsePart;
 
+  static size_t bytes_for(const LeafNumbers& numbers, int order, const ExpectedSides& expected);
   void emit_leaf(int number, std::span<const glm::vec4> sent, float* out, LeafLight& light);
   void pass_leaf(int number, std::span<glm::vec4> received, bool reflect_hits, float* out, LeafLight& light);
   void hit_sides(int number, const LeafWalls& walls, std::uint64_t rows, std::span<glm::vec4> received,

@@ -7,6 +7,7 @@
 #include "propagation/bounce_rules.h"
 #include "propagation/radiance_volume.h"
 #include "propagation/scheme.h"
+#include "voxel/side_halo.h"
 #include "voxel/voxel_grid.h"
 
 namespace volgi {
@@ -45,8 +46,10 @@ class TransportCpu {
 
 /// @param voxels       must outlive the transport.
 /// @param half_voxels  the same scene in cells of twice the edge, for the coarse part of `conservative` (may be null).
+/// @param ranks        that the voxels are parts of; null: there is one.
 /// @throws Error(usage) for a number of directions that there is not, and for schemes that do not carry sides.
 std::unique_ptr<TransportCpu> make_transport(const VoxelGrid& voxels, const SchemeOptions& options,
-                                             const VoxelGrid* half_voxels = nullptr);
+                                             const VoxelGrid* half_voxels = nullptr,
+                                             const RanksOfVolume* ranks = nullptr);
 
 }  // namespace volgi

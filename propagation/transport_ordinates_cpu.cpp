@@ -138,11 +138,13 @@ struct OrdinatesTransportCpu::RadianceLeaves {
   using Coefficients = std::array<std::unique_ptr<Leaf>, 4>;
   std::vector<Coefficients> by_block;
 
-  explicit RadianceLeaves(glm::ivec3 blocks) : by_block(size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z)) {}
+  const BlockBox part;
+
+  explicit RadianceLeaves(const BlockBox& p) : by_block(p.count()), part(p) {}
   /// A row of blocks is one thread's: no other one asks for the same block.
-  void attach(sweep::Block& b, glm::ivec3 blocks, glm::ivec3 block) {
+  void attach(sweep::Block& b, glm::ivec3 block) {
     static_assert(sizeof(openvdb::Vec3s) == 3 * sizeof(float));
-    Coefficients& leaves = by_block[size_t(block_index(blocks, block))];
+    Coefficients& leaves = by_block[part.index(block)];
     for (size_t m = 0; m < 4; ++m) {
       if (!leaves[m]) {
         const glm::ivec3 origin = kBlockCells * block;
@@ -176,33 +178,23 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
 }
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
-                                             const sweep::Kernels* kernels)
+                                             const sweep::Kernels* kernels, const RanksOfVolume* ranks)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
-      constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)) {
-  const glm::ivec3 n = voxels.blocks();
-  for (Flow& flow : flows_) {
-    flow.y_lit.resize(size_t(n.x) * size_t(n.z));
-    flow.z_lit.resize(size_t(n.x) * size_t(n.y));
-    flow.y.resize(flow.y_lit.size() * face_floats());
-    flow.z.resize(flow.z_lit.size() * face_floats());
-  }
+      constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)),
+      pipeline_(ranks, voxels.part(), face_floats()) {
   pack_sides();
 }
 
 void OrdinatesTransportCpu::pack_sides() {
-  const glm::ivec3 n = voxels_.blocks();
-  sides_of_block_.assign(size_t(n.x) * size_t(n.y) * size_t(n.z), -1);
+  const BlockBox& part = voxels_.part();
+  sides_of_block_.assign(part.count(), -1);
   side_.reserve(voxels_.side_count());
-  for (glm::ivec3 b(0); b.z < n.z; ++b.z) {
-    for (b.y = 0; b.y < n.y; ++b.y) {
-      for (b.x = 0; b.x < n.x; ++b.x) {
-        if (voxels_.leaf(b) == nullptr) continue;
-        sides_of_block_[size_t(block_index(n, b))] = int(block_sides_.size());
-        block_sides_.push_back(pack_block(voxels_, b, side_));
-      }
-    }
+  for (size_t i = 0; i < sides_of_block_.size(); ++i) {
+    if (voxels_.leaf(part.block(i)) == nullptr) continue;
+    sides_of_block_[i] = int(block_sides_.size());
+    block_sides_.push_back(pack_block(voxels_, part.block(i), side_));
   }
   assert(side_.size() == voxels_.side_count());
   sends_.resize(block_sides_.size());
@@ -250,26 +242,19 @@ void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
   }
 }
 
-/// Planes of an octant's flow before its sweep: those across y and z of all rows.
-void OrdinatesTransportCpu::fill_rim(int octant) {
-  Flow& flow = flows_[size_t(octant)];
-  const auto fill = [&](Floats& plane, std::vector<unsigned char>& lit, int axis) {
-    std::fill(lit.begin(), lit.end(), static_cast<unsigned char>(1));
-    for (size_t face = 0; face < lit.size(); ++face)
-      kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][size_t(axis)].data(),
-                         plane.data() + face * face_floats());
-  };
-  fill(flow.y, flow.y_lit, 1);
-  fill(flow.z, flow.z_lit, 2);
+/// What comes in through the grid's rim across y or z.
+void OrdinatesTransportCpu::fill_rim(SweepPipeline::Task task, int axis) {
+  const SweepPipeline::Plane plane = pipeline_.plane(task, axis);
+  std::fill(plane.lit, plane.lit + plane.faces, static_cast<unsigned char>(streams_in_ ? 1 : 0));
+  for (size_t face = 0; face < plane.faces && streams_in_; ++face)
+    kernels_.fill_face(constants_.octets, inflow_[size_t(task.octant)][size_t(axis)].data(),
+                       plane.values + face * face_floats());
 }
 
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
-  // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
-  const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
-  tbb::parallel_for(
-      0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
+  sweep(false, nullptr);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
     for (size_t i = sides.begin(); i < sides.end(); ++i) {
       glm::vec4* a = &arrived_[4 * i];
@@ -284,57 +269,79 @@ bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_pas
 
 RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
   begin(sent);
-  RadianceLeaves leaves(voxels_.blocks());
-  // Octants add to the same cells: one after the other.
-  for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, &leaves);
+  RadianceLeaves leaves(voxels_.part());
+  sweep(true, &leaves);  // octants add to the same cells
   std::fill(arrived_.begin(), arrived_.end(), glm::vec4(0.0f));
   return std::move(leaves).volume(voxels_.grid());
 }
 
+/// Octants do not depend on each other. Where threads share what is to be done evenly, rows of blocks need not be
+/// shared out.
+void OrdinatesTransportCpu::sweep(bool in_order, RadianceLeaves* leaves) {
+  const auto threads = size_t(tbb::this_task_arena::max_concurrency());
+  const size_t at_once = in_order ? 1 : pipeline_.alone() ? 8 : threads;
+  pipeline_.start(in_order);
+  for (auto tasks = pipeline_.next(at_once); !tasks.empty(); tasks = pipeline_.next(at_once)) {
+    const bool threaded = tasks.size() % threads != 0;
+    tbb::parallel_for(
+        size_t(0), tasks.size(), [&](size_t i) { sweep_chunk(tasks[i], threaded, leaves); }, tbb::simple_partitioner());
+    for (const SweepPipeline::Task& task : tasks) pipeline_.finished(task);
+  }
+  pipeline_.end();
+}
+
 /// Rows of blocks along x, by (y,z) along the flow; those of one diagonal y + z do not depend on each other.
-void OrdinatesTransportCpu::sweep_octant(int octant, bool threaded, RadianceLeaves* leaves) {
-  const glm::ivec3 n = voxels_.blocks();
-  Flow& flow = flows_[size_t(octant)];
-  std::fill(flow.y_lit.begin(), flow.y_lit.end(), static_cast<unsigned char>(0));
-  std::fill(flow.z_lit.begin(), flow.z_lit.end(), static_cast<unsigned char>(0));
-  if (streams_in_) fill_rim(octant);
+void OrdinatesTransportCpu::sweep_chunk(SweepPipeline::Task task, bool threaded, RadianceLeaves* leaves) {
+  const glm::ivec3 n = voxels_.part().size();
+  for (int axis = 1; axis <= 2; ++axis) {
+    if (pipeline_.at_rim(task.octant, axis)) fill_rim(task, axis);
+  }
   if (!threaded) {
     for (int z = 0; z < n.z; ++z) {
-      for (int y = 0; y < n.y; ++y) sweep_row(octant, y, z, leaves);
+      for (int y = 0; y < n.y; ++y) sweep_row(task, y, z, leaves);
     }
     return;
   }
   for (int diagonal = 0; diagonal <= n.y + n.z - 2; ++diagonal) {
     const int first = std::max(0, diagonal - (n.y - 1));
     const int last = std::min(n.z - 1, diagonal);
-    tbb::parallel_for(first, last + 1, [&](int z) { sweep_row(octant, diagonal - z, z, leaves); });
+    tbb::parallel_for(first, last + 1, [&](int z) { sweep_row(task, diagonal - z, z, leaves); });
   }
 }
 
-void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* leaves) {
+void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, RadianceLeaves* leaves) {
   const FlushDenormals flush;
-  const glm::ivec3 n = voxels_.blocks();
+  const BlockBox& part = voxels_.part();
+  const glm::ivec3 n = part.size();
+  const int octant = task.octant, width = pipeline_.chunk_blocks(), first_x = width * task.chunk;
   const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
-  const size_t face = face_floats();
-  Flow& flow = flows_[size_t(octant)];
-  alignas(64) float x_carried[sweep::kBlockFace * sweep::kMaxLanes];
-  unsigned char x_lit = streams_in_ ? 1 : 0;
-  if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
+  const size_t face = face_floats(), row = size_t(y) + size_t(n.y) * size_t(z);
+  const SweepPipeline::Plane through_y = pipeline_.plane(task, 1), through_z = pipeline_.plane(task, 2);
+  alignas(64) float of_row[sweep::kBlockFace * sweep::kMaxLanes];
+  unsigned char of_row_lit = 0;
+  const bool several = pipeline_.chunks() > 1;
+  float* const x_carried = several ? pipeline_.carried(octant, row) : of_row;
+  unsigned char& x_lit = several ? pipeline_.carried_lit(octant, row) : of_row_lit;
+  if (task.chunk == 0) {
+    x_lit = streams_in_ ? 1 : 0;
+    if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
+  }
   const sweep::Kernel kernel =
       kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);
-  for (int x = 0; x < n.x; ++x) {
+  for (int x = first_x; x < std::min(first_x + width, n.x); ++x) {
     const glm::ivec3 along(x, y, z);
-    const glm::ivec3 block = positive * along + (1 - positive) * (n - 1 - along);
-    const int sides = sides_of_block_[size_t(block_index(n, block))];
-    const size_t by_y = size_t(x) + size_t(n.x) * size_t(z), by_z = size_t(x) + size_t(n.x) * size_t(y);
-    unsigned char& y_lit = flow.y_lit[by_y];
-    unsigned char& z_lit = flow.z_lit[by_z];
+    const glm::ivec3 block = part.first + positive * along + (1 - positive) * (n - 1 - along);
+    const int sides = sides_of_block_[part.index(block)];
+    const size_t by_y = size_t(x - first_x) + size_t(width) * size_t(z);
+    const size_t by_z = size_t(x - first_x) + size_t(width) * size_t(y);
+    unsigned char& y_lit = through_y.lit[by_y];
+    unsigned char& z_lit = through_z.lit[by_z];
     if (x_lit == 0 && y_lit == 0 && z_lit == 0 && (sides < 0 || sends_[size_t(sides)] == 0)) continue;
     const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels_.grid().cells - kBlockCells * block);
     sweep::Block b{};
     b.x = x_carried;
-    b.y = flow.y.data() + by_y * face;
-    b.z = flow.z.data() + by_z * face;
+    b.y = through_y.values + by_y * face;
+    b.z = through_z.values + by_z * face;
     if (x_lit == 0) std::fill(b.x, b.x + face, 0.0f);
     if (y_lit == 0) std::fill(b.y, b.y + face, 0.0f);
     if (z_lit == 0) std::fill(b.z, b.z + face, 0.0f);
@@ -346,7 +353,7 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
       b.sent = &sent_[first].x;
       b.arrived = &arrived_[4 * first].x;
     }
-    if (leaves != nullptr) leaves->attach(b, n, block);
+    if (leaves != nullptr) leaves->attach(b, block);
     kernel(constants_, b);
     x_lit = any_light(b.x, face) ? 1 : 0;
     y_lit = any_light(b.y, face) ? 1 : 0;
@@ -355,21 +362,25 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
 }
 
 size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
-  const glm::ivec3 n = leaf_blocks(grid);
-  const size_t flows = 8 * size_t(n.x) * size_t(n.y + n.z);
+  const BlockBox all{glm::ivec3(0), leaf_blocks(grid)};
+  return bytes_of_sides(all, expected) +
+         SweepPipeline::bytes_for(nullptr, all, face_floats(octets_of(choice.directions / 8)));
+}
+
+size_t OrdinatesTransportCpu::bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice,
+                                        const ExpectedSides& expected) {
+  return bytes_of_sides(ranks.part(), expected) +
+         SweepPipeline::bytes_for(&ranks, ranks.part(), face_floats(octets_of(choice.directions / 8)));
+}
+
+size_t OrdinatesTransportCpu::bytes_of_sides(const BlockBox& part, const ExpectedSides& expected) {
   return sizeof(OrdinatesTransportCpu) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
-         size_t(n.x) * size_t(n.y) * size_t(n.z) * sizeof(int) +
-         expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) +
-         flows * (face_floats(octets_of(choice.directions / 8)) * sizeof(float) + 1);
+         part.count() * sizeof(int) + expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4));
 }
 
 size_t OrdinatesTransportCpu::bytes() const {
-  size_t bytes = sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + sides_of_block_.size() * 4 +
-                 side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4));
-  for (const Flow& flow : flows_) {
-    bytes += (flow.y.size() + flow.z.size()) * sizeof(float) + flow.y_lit.size() + flow.z_lit.size();
-  }
-  return bytes;
+  return sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + sides_of_block_.size() * 4 +
+         side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) + pipeline_.bytes();
 }
 
 }  // namespace volgi

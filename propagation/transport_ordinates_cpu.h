@@ -6,6 +6,7 @@
 
 #include "propagation/ordinates.h"
 #include "propagation/sweep/sweep_kernel.h"
+#include "propagation/sweep/sweep_pipeline.h"
 #include "propagation/transport_cpu.h"
 #include "voxel/expected_sides.h"
 
@@ -24,8 +25,11 @@ namespace volgi {
 class OrdinatesTransportCpu : public TransportCpu {
  public:
   /// @param kernels  null: the fastest that this machine can run.
+  /// @param ranks    that the voxels are parts of, which then do all together; null: there is one. No result depends
+  ///                 on their number (sweep/sweep_pipeline.h).
   /// @throws Error(usage) as ordinate_set.
-  OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
+  OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
+                        const RanksOfVolume* ranks = nullptr);
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
@@ -37,23 +41,22 @@ class OrdinatesTransportCpu : public TransportCpu {
   size_t bytes() const override;
   /// What bytes() will be.
   static size_t bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected);
+  /// Of a rank's part.
+  static size_t bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice, const ExpectedSides& expected);
+  const SweepPipeline& pipeline() const { return pipeline_; }
   OrdinateChoice choice() const { return choice_; }
 
  private:
   using Floats = std::vector<float, tbb::cache_aligned_allocator<float>>;
-  /// Light between blocks of one octant, by block along the flow: through y by (x,z), through z by (x,y). That through
-  /// x stays inside a row of blocks. `lit` says where there is any; elsewhere the values are of no meaning.
-  struct Flow {
-    Floats y, z;
-    std::vector<unsigned char> y_lit, z_lit;
-  };
   struct RadianceLeaves;
 
   void pack_sides();
   void make_inflow(const Sky& sky);
-  void fill_rim(int octant);
-  void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
-  void sweep_row(int octant, int y, int z, RadianceLeaves* leaves);
+  void fill_rim(SweepPipeline::Task task, int axis);
+  void sweep(bool in_order, RadianceLeaves* leaves);
+  void sweep_chunk(SweepPipeline::Task task, bool threaded, RadianceLeaves* leaves);
+  void sweep_row(SweepPipeline::Task task, int y, int z, RadianceLeaves* leaves);
+  static size_t bytes_of_sides(const BlockBox& part, const ExpectedSides& expected);
   size_t face_floats() const { return face_floats(constants_.octets); }
   static size_t face_floats(int octets) { return sweep::kBlockFace * size_t(octets) * sweep::kOctet; }
 
@@ -61,14 +64,14 @@ class OrdinatesTransportCpu : public TransportCpu {
   OrdinateChoice choice_;
   sweep::Kernels kernels_;
   sweep::Constants constants_;
-  std::array<Flow, 8> flows_;
+  SweepPipeline pipeline_;
   /// What blocks at the rim find where light comes in, by octant and axis: one row of lanes.
   std::array<std::array<Floats, 3>, 8> inflow_;
   std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
   bool streams_in_ = false;
   // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
   std::vector<sweep::BlockSides> block_sides_;
-  std::vector<int> sides_of_block_;   // index into block_sides_, or -1
+  std::vector<int> sides_of_block_;   // of the part: index into block_sides_, or -1
   std::vector<unsigned char> sends_;  // by block_sides_: whether any side of the block sends
   std::vector<std::uint32_t> side_;
   std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> sent_;     // w: 1 - tau

@@ -72,16 +72,36 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
          ConservativeTransportCpu::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
-VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options)
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  const glm::ivec3 around(0, 1, 1);
+  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
+  const ExpectedSides own = expected_sides(scene, grid, part), known = expected_sides(scene, grid, held);
+  size_t bytes = voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(held, known.sides, known.blocks) +
+                 2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
+                 side_irradiance_bytes(own.sides);
+  if (options.scheme.scheme == Scheme::ordinates)
+    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, options.scheme), own);
+  return bytes + ConservativeTransportCpu::bytes_for(ranks, options.scheme.sh_order, own);
+}
+
+VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
     : scene_(scene),
       options_(options),
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
       rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
+  if (ranks != nullptr && ranks->count() > 1)
+    ranks_.emplace(RanksOfVolume{*ranks, Decomposition(leaf_blocks(grid_), ranks->count())});
+  if (ranks_) refuse_of_ranks(options);
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   if (options.memory_limit)
-    refuse_above_limit(options, bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)), "CPU");
+    refuse_above_limit(options,
+                       ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
+                              : bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)),
+                       "CPU");
 }
 
 void VolumeCpu::scene_moved() {
@@ -91,13 +111,13 @@ void VolumeCpu::scene_moved() {
 
 VolumeCpu::~VolumeCpu() = default;
 
-bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
+bool VolumeCpu::has_coarse_part() const { return !ranks_ && volgi::has_coarse_part(options_.scheme, grid_); }
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   const bool white = may_have_white_pockets(rules_.largest_albedo);
-  VoxelGrid fresh = voxelize_cpu(scene_, grid_, mipmaps_);
-  if (white) pocket_cells_ = bound_white_pockets(fresh);
+  VoxelGrid fresh = ranks_ ? voxelize_cpu(scene_, grid_, mipmaps_, *ranks_) : voxelize_cpu(scene_, grid_, mipmaps_);
+  if (white) pocket_cells_ = bound_white_pockets(fresh, ranks());
   const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
@@ -106,17 +126,18 @@ void VolumeCpu::voxelize() {
   const bool only_sides_count = !moved || !(coarse || papers);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
+  if (ranks_) halo_.emplace(*ranks_, voxels_);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (coarse && white) bound_white_pockets(half_voxels_);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
   } else {
-    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr);
+    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks());
     if (bounces_) {
       bounces_->set_transport(std::move(transport));
     } else {
-      bounces_ = std::make_unique<BouncesCpu>(std::move(transport));
+      bounces_ = std::make_unique<BouncesCpu>(std::move(transport), ranks_ ? &ranks_->ranks : nullptr);
     }
   }
 }
@@ -128,6 +149,7 @@ void VolumeCpu::light_in(SideFlux flux) {
 
 void VolumeCpu::propagate() {
   if (bounces_) {
+    bounces_->set_checkpoint(checkpoint_);
     report_ = bounces_->run(voxels_, flux_, flux_.emits, rules_, streaming_sky(scene_, options_));
     return;
   }
@@ -139,7 +161,7 @@ void VolumeCpu::propagate() {
 
 void VolumeCpu::irradiate() {
   if (!bounces_) return;
-  irradiance_ = side_irradiance(voxels_, flux_, *bounces_);
+  irradiance_ = side_irradiance(voxels_, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
   if (options_.source == VolumeOptions::Source::lights || !flux_.emits) return;
   // The first arrival in the volume is emission's bounce 1.
   for (size_t i = 0; i < irradiance_.indirect.size(); ++i) {
@@ -149,7 +171,8 @@ void VolumeCpu::irradiate() {
 }
 
 const CellVolumes& VolumeCpu::cells() {
-  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
+  const BlockBox part = ranks_ ? ranks_->part() : BlockBox{glm::ivec3(0), leaf_blocks(grid_)};
+  if (!cells_.occupancy) cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_, part);
   return cells_;
 }
 

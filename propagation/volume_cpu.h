@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "core/mipmaps.h"
 #include "core/scene.h"
@@ -19,11 +20,17 @@ class VolumeCpu {
   /// @param scene  must outlive the volume.
   /// @throws Error(usage) for options that make no sense, Error(over_limit) above options.memory_limit, and as
   ///   make_grid.
-  VolumeCpu(const Scene& scene, const VolumeOptions& options);
+  /// @param ranks  that hold the volume together: this one then has a part, and all do everything below together, to
+  ///   the same numbers as one alone. Null: there is one.
+  VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks = nullptr);
   ~VolumeCpu();
 
   /// The scene has moved within the same grid, in place. Materials, textures and images must be the same.
   void scene_moved();
+
+  /// Where propagate() keeps its state and goes on from (BouncesCpu::set_checkpoint); must outlive this. Schemes that
+  /// carry sides.
+  void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
 
   // In this order:
   void voxelize();
@@ -35,6 +42,8 @@ class VolumeCpu {
   const Grid& grid() const { return grid_; }
   const VoxelGrid& voxels() const { return voxels_; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
+  /// Null where there is one rank.
+  const RanksOfVolume* ranks() const { return ranks_ ? &*ranks_ : nullptr; }
   const SideFlux& flux() const { return flux_; }
   /// Of schemes that carry sides. After a first bounce on the screen `indirect` holds bounces 2 ... n of punctual light
   /// and 1 ... n of emission, `direct` nothing.
@@ -53,6 +62,8 @@ class VolumeCpu {
   Grid grid_;
   BounceRules rules_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
+  std::optional<RanksOfVolume> ranks_;
+  std::optional<SideHalo> halo_;  // of voxels_
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;
   SideFlux flux_;
@@ -61,6 +72,7 @@ class VolumeCpu {
   SideIrradiance irradiance_;
   BounceReport report_;
   size_t pocket_cells_ = 0;
+  BounceCheckpoint* checkpoint_ = nullptr;
   bool moved_ = false;  // since the last voxelization
 };
 
@@ -68,5 +80,8 @@ class VolumeCpu {
 /// refused before it is taken: the sum of what its parts say of themselves.
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const ExpectedSides& expected);
+/// The same of the volume's part that this rank has.
+size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
+                          const RanksOfVolume& ranks);
 
 }  // namespace volgi

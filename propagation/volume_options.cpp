@@ -58,6 +58,15 @@ void refuse_on_cpu(const VolumeOptions& o) {
                 "voxel.method=single_pass, voxel.interleave=1: the CPU slices along three axes; use --backend gpu");
 }
 
+void refuse_of_ranks(const VolumeOptions& o) {
+  if (!carries_sides(o.scheme.scheme))
+    throw Error(ExitCode::usage,
+                "the papers' schemes run as one rank; of several there are --scheme ordinates and "
+                "conservative");
+  if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
+    throw Error(ExitCode::usage, "the coarse grid of conservative is for one rank: leave it out, or use one rank");
+}
+
 void warn_of_answer(const std::string& scene, const VolumeOptions& o, const BounceReport& report, size_t pocket_cells,
                     size_t cells) {
   const bool all_asked = !o.bounces && !o.iterations && !o.passes_per_run && carries_sides(o.scheme.scheme);

@@ -48,6 +48,8 @@ const Sky* streaming_sky(const Scene& scene, const VolumeOptions& options);
 /// @throws Error(usage) for what the other backend alone can do, and for what neither can.
 void refuse_on_gpu(const VolumeOptions& options);
 void refuse_on_cpu(const VolumeOptions& options);
+/// @throws Error(usage) for what several ranks cannot do together.
+void refuse_of_ranks(const VolumeOptions& options);
 
 /// @throws Error(over_limit) naming both figures when `expected` exceeds options.memory_limit. @param where  "CPU",
 /// "GPU".

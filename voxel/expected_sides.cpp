@@ -19,7 +19,17 @@ constexpr int kFine = 3;  // lines to a cell, on an edge
 /// for such a line has no other.
 class FaceMarks {
  public:
-  FaceMarks(const Grid& grid, int axis) : grid_(grid), axis_(axis), met_(size_t(shared::face_count(grid, axis)), 0) {}
+  FaceMarks(const Grid& grid, int axis, const BlockBox& blocks)
+      : grid_(grid),
+        axis_(axis),
+        blocks_(blocks),
+        first_cell_(kLeafCells * blocks.first),
+        last_cell_(glm::min(kLeafCells * blocks.last, grid.cells)),
+        first_(glm::max(first_cell_ - 1, 0)),
+        size_(glm::max(glm::min(last_cell_ + 1, grid.cells) - first_, 0)) {
+    ++size_[axis];
+    met_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z), 0);
+  }
 
   /// All lines of the family that meet the triangle (cell coordinates).
   void mark(const std::array<glm::dvec3, 3>& t) {
@@ -40,17 +50,19 @@ class FaceMarks {
       }
     }
   }
-  /// @param blocks  with sides, by block_index: those of the marked faces' cells become true.
+  /// @param blocks  with sides: those of the marked faces' cells become true.
   void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
-    for (int face = 0; face < int(met_.size()); ++face) {
-      if (met_[size_t(face)] == 0) continue;
+    for (size_t face = 0; face < met_.size(); ++face) {
+      if (met_[face] == 0) continue;
       ++sum.faces;
-      glm::ivec3 cell = shared::face_coord(grid_, axis_, face);
-      if (met_[size_t(face)] != CENTRE && beside_a_centre(cell)) continue;
+      const size_t row = face / size_t(size_.x);
+      glm::ivec3 cell =
+          first_ + glm::ivec3(int(face % size_t(size_.x)), int(row % size_t(size_.y)), int(row / size_t(size_.y)));
+      if (met_[face] != CENTRE && beside_a_centre(cell)) continue;
       for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
-        if (!shared::cell_inside(grid_, cell)) continue;
+        if (glm::any(glm::lessThan(cell, first_cell_)) || glm::any(glm::greaterThanEqual(cell, last_cell_))) continue;
         ++sum.sides;
-        blocks[size_t(block_index(leaf_blocks(grid_), cell / kLeafCells))] = true;
+        blocks[blocks_.index(cell / kLeafCells)] = true;
       }
     }
   }
@@ -63,9 +75,10 @@ class FaceMarks {
   /// First line at or after `p` (round_up), or last one at or before it, on the two other axes; inside the grid.
   glm::ivec2 fine_line(glm::dvec3 p, int round_up) const {
     const glm::dvec2 at = glm::dvec2(p[shared::axis_b(axis_)], p[shared::axis_c(axis_)]) * double(kFine) - 0.5;
+    const glm::dvec2 least(kFine * first_[shared::axis_b(axis_)], kFine * first_[shared::axis_c(axis_)]);
     const glm::dvec2 most =
-        glm::dvec2(kFine * grid_.cells[shared::axis_b(axis_)], kFine * grid_.cells[shared::axis_c(axis_)]);
-    return glm::ivec2(glm::clamp(round_up != 0 ? glm::ceil(at) : glm::floor(at), glm::dvec2(-1.0 + round_up),
+        least + glm::dvec2(kFine * size_[shared::axis_b(axis_)], kFine * size_[shared::axis_c(axis_)]);
+    return glm::ivec2(glm::clamp(round_up != 0 ? glm::ceil(at) : glm::floor(at), least - 1.0 + double(round_up),
                                  most - 1.0 + double(round_up)));
   }
   /// Part of the row `at_c` that lies in the triangle, on axis b.
@@ -88,7 +101,8 @@ class FaceMarks {
     place[axis_] = int(face);
     place[shared::axis_b(axis_)] = line_b / kFine;
     place[shared::axis_c(axis_)] = line_c / kFine;
-    char& met = met_[size_t(shared::face_index(grid_, axis_, place))];
+    if (!has(place)) return;
+    char& met = met_[index(place)];
     met = std::max(met, line_b % kFine == kFine / 2 && line_c % kFine == kFine / 2 ? CENTRE : ASIDE);
   }
   /// Whether the line between centres meets a surface at this face's place one face on or back, or beside it.
@@ -99,15 +113,24 @@ class FaceMarks {
       at[b] += k % 3 - 1;
       at[c] += k / 3 % 3 - 1;
       at[axis_] += k / 9 - 1;
-      const bool inside = at[b] >= 0 && at[b] < grid_.cells[b] && at[c] >= 0 && at[c] < grid_.cells[c] &&
-                          at[axis_] >= 0 && at[axis_] <= grid_.cells[axis_];
-      if (inside && met_[size_t(shared::face_index(grid_, axis_, at))] == CENTRE) return true;
+      if (has(at) && met_[index(at)] == CENTRE) return true;
     }
     return false;
   }
 
+  bool has(glm::ivec3 face) const {
+    return glm::all(glm::greaterThanEqual(face, first_)) && glm::all(glm::lessThan(face, first_ + size_));
+  }
+  size_t index(glm::ivec3 face) const {
+    const glm::ivec3 at = face - first_;
+    return size_t(at.x) + size_t(size_.x) * (size_t(at.y) + size_t(size_.y) * size_t(at.z));
+  }
+
   const Grid& grid_;
   int axis_;
+  BlockBox blocks_;
+  glm::ivec3 first_cell_, last_cell_;           // that are asked for
+  glm::ivec3 first_, size_;                     // faces that are looked at: one more all around
   static constexpr char ASIDE = 1, CENTRE = 2;  // by which lines
   std::vector<char> met_;
 };
@@ -115,11 +138,15 @@ class FaceMarks {
 }  // namespace
 
 ExpectedSides expected_sides(const Scene& scene, const Grid& grid) {
+  return expected_sides(scene, grid, {glm::ivec3(0), leaf_blocks(grid)});
+}
+
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& part) {
   ExpectedSides sum;
-  const glm::ivec3 n = leaf_blocks(grid);
-  std::vector<bool> blocks(size_t(n.x) * size_t(n.y) * size_t(n.z), false);
+  if (part.empty()) return sum;
+  std::vector<bool> blocks(part.count(), false);
   for (int axis = 0; axis < 3; ++axis) {
-    FaceMarks marks(grid, axis);
+    FaceMarks marks(grid, axis, part);
     for (const Mesh& mesh : scene.meshes) {
       std::vector<glm::dvec3> cells;
       cells.reserve(mesh.positions.size());

@@ -3,6 +3,7 @@
 
 #include "core/scene.h"
 #include "voxel/grid.h"
+#include "voxel/part.h"
 
 namespace volgi {
 
@@ -17,5 +18,7 @@ struct ExpectedSides {
 /// both voxelizations look. Materials are not looked at: what alpha cuts away is counted.
 /// Cost: a step for each crossing, nine a face; memory: three bits a cell, and a bit a block.
 ExpectedSides expected_sides(const Scene& scene, const Grid& grid);
+/// Of these blocks alone.
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& blocks);
 
 }  // namespace volgi

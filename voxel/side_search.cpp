@@ -43,10 +43,14 @@ bool behind_side(const shared::Side& side, const glm::vec3& normal, int axis, fl
 }  // namespace
 
 SideColumns::SideColumns(const VoxelGrid& voxels) {
-  const glm::ivec3 cells = voxels.grid().cells;
+  const BlockBox& held = voxels.held();
+  const glm::ivec3 first = kLeafCells * held.first;
+  const glm::ivec3 cells = glm::max(glm::min(kLeafCells * held.last, voxels.grid().cells) - first, 0);
   for (int axis = 0; axis < 3; ++axis) {
-    const int stride = voxels.blocks()[axis] + 2 * kPad;
-    layout_[size_t(axis)] = {stride, cells[shared::axis_b(axis)] + 2 * kPad, cells[shared::axis_c(axis)] + 2 * kPad};
+    const int b = shared::axis_b(axis), c = shared::axis_c(axis);
+    const int stride = held.size()[axis] + 2 * kPad, columns_b = cells[b] + 2 * kPad;
+    layout_[size_t(axis)] = {stride, columns_b, cells[c] + 2 * kPad,
+                             held.first[axis] + stride * (first[b] + columns_b * first[c])};
   }
   std::vector<const VoxelGrid::Leaf*> leaves;
   voxels.cell_sides_tree().getNodes(leaves);
@@ -71,9 +75,8 @@ void SideColumns::fill(const VoxelGrid& voxels, const VoxelGrid::Leaf& leaf) {
     for (int face = 0; face < 6; ++face) {
       if (!shared::has_side(own, face)) continue;
       const int axis = shared::face_axis(face), front = voxels.sides()[side++].front;
-      std::uint8_t& to = columns_[size_t(face) + 6 * size_t(front)]
-                                 [byte(face, cell[shared::axis_b(axis)], cell[shared::axis_c(axis)]) +
-                                  size_t(origin[axis] >> kLeafShift)];
+      std::uint8_t& to = columns_[size_t(face) + 6 * size_t(front)][size_t(
+          byte(face, cell[shared::axis_b(axis)], cell[shared::axis_c(axis)]) + (origin[axis] >> kLeafShift))];
       to = std::uint8_t(to | 1u << local[axis]);
     }
   }

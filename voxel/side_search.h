@@ -32,8 +32,9 @@ class SideColumns {
     const std::uint8_t* column_bytes = nullptr;
     const std::uint8_t* around_bytes = nullptr;
     int stride_b = 0, stride_c = 0;  // bytes between columns
+    int origin = 0;                  // offset of column (0, 0), and its first cell, which need not be there
 
-    int offset(int b, int c) const { return stride_b * b + stride_c * c; }
+    int offset(int b, int c) const { return origin + stride_b * b + stride_c * c; }
     std::uint32_t column(int offset, int first) const { return read(column_bytes + offset, first); }
     /// Any of the column and the eight around it.
     std::uint32_t around(int offset, int first) const { return read(around_bytes + offset, first); }
@@ -48,8 +49,7 @@ class SideColumns {
   Columns of_face(int face, int front) const {
     const Layout& l = layout_[size_t(face >> 1)];
     const size_t kind = size_t(face) + 6 * size_t(front);
-    const size_t first = byte(face, 0, 0);
-    return {columns_[kind].data() + first, around_[kind].data() + first, l.stride, l.stride * l.columns_b};
+    return {columns_[kind].data(), around_[kind].data(), l.stride, l.stride * l.columns_b, byte(face, 0, 0)};
   }
 
  private:
@@ -57,13 +57,14 @@ class SideColumns {
   static constexpr int kPad = 2;  // bytes before and after a column, and columns around the grid
   struct Layout {
     int stride, columns_b, columns_c;  // all padded
+    int outside;                       // bytes of what lies before the blocks that are held
   };
 
   void fill(const VoxelGrid& voxels, const VoxelGrid::Leaf& leaf);
   void spread(int kind);
-  size_t byte(int face, int b, int c) const {
+  int byte(int face, int b, int c) const {
     const Layout& l = layout_[size_t(face >> 1)];
-    return size_t(kPad) + size_t(l.stride) * (size_t(kPad + b) + size_t(l.columns_b) * size_t(kPad + c));
+    return kPad + l.stride * (kPad + b + l.columns_b * (kPad + c)) - l.outside;
   }
 
   std::array<Layout, 3> layout_;

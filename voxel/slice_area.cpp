@@ -31,7 +31,7 @@ inline void set_point(glm::vec3& point, int axis, const glm::ivec3& cell, int su
 class AreaCounter {
  public:
   AreaCounter(const SlicedScene& s, const VoxelGrid& voxels)
-      : s_(s), voxels_(voxels), columns_(voxels), fixed_(voxels.side_count()) {}
+      : s_(s), voxels_(voxels), columns_(voxels), fixed_(voxels.sides().size()) {}
 
   /// Never at the same time for blocks that may count for the same sides: between the others are two blocks.
   void add(const std::vector<AreaRecord>& records) {
@@ -44,10 +44,7 @@ class AreaCounter {
     }
   }
 
-  float area_m2(size_t side) const {
-    const float h = s_.grid.cell_size_m;
-    return float(fixed_[side]) / kAreaUnit * h * h;
-  }
+  std::vector<std::uint32_t> counted() && { return std::move(fixed_); }
 
  private:
   /// `search` is of the record's triangle.
@@ -100,12 +97,13 @@ void for_each_block_apart(const SlicedScene& s, const Visit& visit) {
   struct Row {
     size_t first, last;  // of `occupied`, which is in the order of rows
   };
+  const glm::ivec3 blocks = s.window.size();
   std::array<std::vector<Row>, 9> phases;
-  const auto row_of = [&](size_t i) { return int(s.occupied[i]) / s.blocks.x; };
+  const auto row_of = [&](size_t i) { return int(s.occupied[i]) / blocks.x; };
   for (size_t first = 0, last = 0; first < s.occupied.size(); first = last) {
     const int row = row_of(first);
     while (last < s.occupied.size() && row_of(last) == row) ++last;
-    const int y = row % s.blocks.y, z = row / s.blocks.y;
+    const int y = row % blocks.y, z = row / blocks.y;
     phases[size_t(y % 3 + 3 * (z % 3))].push_back({first, last});
   }
   for (const std::vector<Row>& rows : phases) {
@@ -117,18 +115,25 @@ void for_each_block_apart(const SlicedScene& s, const Visit& visit) {
 
 }  // namespace
 
-void count_areas(const SlicedScene& s, const BlockTable& table, VoxelGrid& voxels) {
+std::vector<std::uint32_t> count_areas(const SlicedScene& s, const BlockTable& table, const VoxelGrid& voxels) {
   AreaCounter counter(s, voxels);
   for_each_block_apart(s, [&](std::uint32_t at) {
     const BlockFaces* block = table[at].get();
-    if (block != nullptr) counter.add(block->areas);
+    // What lies on the grid's upper rim goes with the last blocks.
+    const glm::ivec3 of = glm::min(s.window.block(at), leaf_blocks(s.grid) - 1);
+    if (block != nullptr && s.part.contains(of)) counter.add(block->areas);
   });
+  return std::move(counter).counted();
+}
+
+void set_areas(const std::vector<std::uint32_t>& counted, VoxelGrid& voxels) {
+  const float h = voxels.grid().cell_size_m;
   auto& sides = voxels.mutable_sides();
   tbb::parallel_for(tbb::blocked_range<size_t>(0, sides.size(), 4096), [&](const tbb::blocked_range<size_t>& part) {
     for (size_t i = part.begin(); i != part.end(); ++i) {
       shared::Side& side = sides[i];
       const float min_area_m2 = SIDE_MIN_FILL * side.face_m2 / shared::staircase_factor(side.normal);
-      side.area_m2 = std::max(counter.area_m2(i), min_area_m2);
+      side.area_m2 = std::max(float(counted[i]) / kAreaUnit * h * h, min_area_m2);
     }
   });
 }

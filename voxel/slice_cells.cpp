@@ -130,19 +130,18 @@ Leaves BlockCells::collect() {
 }  // namespace
 
 CellVolumes make_cell_volumes(const SlicedScene& s, const BlockTable& areas) {
-  const glm::ivec3 blocks = leaf_blocks(s.grid);
-  const size_t count = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
+  const size_t count = s.part.count();
   std::vector<Leaves> leaves(count);
   using Cells = std::array<Cell, kBlockCells>;
   tbb::enumerable_thread_specific<std::unique_ptr<Cells>> scratch([] { return std::make_unique<Cells>(); });
   tbb::parallel_for(size_t(0), count, [&](size_t i) {
-    const glm::ivec3 block = block_coord(blocks, int(i));
+    const glm::ivec3 block = s.part.block(i);
     BlockCells cells(s, block, *scratch.local());
-    const auto areas_of = [&](glm::ivec3 at) { return areas[size_t(block_index(s.blocks, at))].get(); };
+    const auto areas_of = [&](glm::ivec3 at) { return areas[s.window.index(at)].get(); };
     if (const BlockFaces* own = areas_of(block)) cells.add(own->areas);
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 above = block;
-      if (++above[axis] >= s.blocks[axis]) continue;
+      if (++above[axis] >= s.window.last[axis]) continue;
       const BlockFaces* there = areas_of(above);
       const bool outside = kLeafCells * above[axis] >= s.grid.cells[axis];
       if (there != nullptr && (outside || there->areas_below[size_t(axis)])) cells.add(there->areas);

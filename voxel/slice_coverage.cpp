@@ -61,7 +61,8 @@ class Reach {
   static std::uint32_t every_third(std::uint32_t bits) { return (bits & 1u) | (bits >> 2 & 2u) | (bits >> 4 & 4u); }
 
   std::uint32_t blocked_parts(int axis, glm::ivec3 face_cell) const {
-    const BlockFaces* block = table_[size_t(block_index(s_.blocks, face_cell / kLeafCells))].get();
+    const glm::ivec3 at = face_cell / kLeafCells;
+    const BlockFaces* block = s_.window.contains(at) ? table_[s_.window.index(at)].get() : nullptr;
     if (block == nullptr) return 0;
     const int face = block->face(axis, leaf_offset(face_cell));
     return face < 0 ? 0 : block->faces[size_t(face)].fine_blocked;

@@ -32,7 +32,7 @@ class BlockMarker {
 
   BlockMarker(const SlicedScene& s, std::uint32_t block, Scratch& scratch)
       : s_(s), first_cell_(s.block_cell(block)), scratch_(scratch), areas_(first_cell_, scratch.areas) {
-    const int triangle_bits = std::max(8, int(std::bit_width(s.triangles.size())));
+    const int triangle_bits = std::max(8, int(std::bit_width(s.triangle_count)));
     depth_max_ = (1u << (27 - triangle_bits)) - 1;
     for (int axis = 0; axis < 3; ++axis) windows_[axis] = block_window(s, first_cell_, axis);
   }

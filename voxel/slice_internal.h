@@ -25,6 +25,9 @@ constexpr std::int64_t kHalfNodeStep = kNodeStep / 2;
 static_assert(kFine * kNodeStep == SLICE_STEPS);
 constexpr std::int64_t node_position(std::int64_t k) { return k * kNodeStep + kHalfNodeStep; }
 
+/// Around a rank's part, in cells, sides are known too: as far as counting areas and light that is put down look.
+constexpr int kSidesKnownAround = kLeafCells - 1;
+
 constexpr float kOpaque = 0.999f;  // a share as large as this stops everything (slice.frag.glsl)
 
 using Long3 = std::array<std::int64_t, 3>;
@@ -65,24 +68,32 @@ inline FineBox fine_box(const SliceTriangle& t) {
 
 /// The scene's triangles in the order that the GPU numbers them (by material, then as in the file), and which of them
 /// may have fragments in which block of 8^3 cells. Faces belong to the block of their upper cell, so that there is one
-/// layer of blocks more than cells need where the cells fill their last block.
+/// layer of blocks more than cells need where the cells fill their last block. A rank among several has a window of the
+/// blocks: its part and those around, of which `held` get sides, all but their outermost layer of cells, for whose
+/// faces coverage would look outside.
 struct SlicedScene {
   const Scene* scene = nullptr;
   const Mipmaps* mipmaps = nullptr;
   Grid grid{};
-  glm::ivec3 blocks{0};
-  std::vector<SliceTriangle> triangles;
-  std::vector<std::uint32_t> first;     // of `binned`, by block; one more at the end
-  std::vector<std::uint32_t> binned;    // triangles
-  std::vector<std::uint32_t> occupied;  // blocks with triangles, ascending
+  BlockBox part, held, window;
+  glm::ivec3 first_cell{0}, last_cell{0};  // that get sides; the last one not among them
+  std::vector<SliceTriangle> triangles;    // that meet the window
+  size_t triangle_count = 0;               // of the scene
+  std::vector<std::uint32_t> first;        // of `binned`, by block of the window; one more at the end
+  std::vector<std::uint32_t> binned;       // triangles
+  std::vector<std::uint32_t> occupied;     // blocks with triangles, ascending
 
   std::vector<std::optional<SlicedMaterial>> constant;  // by mesh: where no texture or vertex colour varies it
 
   const Mesh& mesh(const SliceTriangle& t) const { return scene->meshes[t.mesh]; }
   const Material& material(const SliceTriangle& t) const { return scene->materials[size_t(mesh(t).material)]; }
-  glm::ivec3 block_cell(std::uint32_t block) const { return kLeafCells * block_coord(blocks, int(block)); }
+  glm::ivec3 block_cell(std::uint32_t block) const { return kLeafCells * window.block(block); }
+  bool gets_sides(glm::ivec3 cell) const {
+    return glm::all(glm::greaterThanEqual(cell, first_cell)) && glm::all(glm::lessThan(cell, last_cell));
+  }
 };
-/// The scene and its mipmaps must outlive what is returned.
+/// The scene and its mipmaps must outlive what is returned. @param part  of the grid's blocks; all of them: no ranks.
+SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps, const BlockBox& part);
 SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 
 // Edge in cells of the square that a texel should stand for: alpha belongs to a fine line, albedo to a face.
@@ -189,8 +200,11 @@ void cover_faces(const SlicedScene& s, BlockTable& table);
 /// Sides of all covered faces, their areas still zero.
 VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table);
 
-/// Gives every side the area of the surface that it stands for.
-void count_areas(const SlicedScene& s, const BlockTable& table, VoxelGrid& voxels);
+/// What the part's surfaces give to each side of voxels.sides(), in units of h^2 / 2^20: sums of integers, so that
+/// neither threads nor ranks matter.
+std::vector<std::uint32_t> count_areas(const SlicedScene& s, const BlockTable& table, const VoxelGrid& voxels);
+/// Gives sides the area of the surface that they stand for.
+void set_areas(const std::vector<std::uint32_t>& counted, VoxelGrid& voxels);
 
 /// The blocks' areas alone, as mark_faces counts them.
 BlockTable list_areas(const SlicedScene& s);

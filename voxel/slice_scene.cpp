@@ -51,16 +51,20 @@ void place_in_blocks(const SlicedScene& s, SliceTriangle& t) {
   for (int axis = 0; axis < 3; ++axis) axes_met += fine.first[axis] <= fine.last[axis];
   if (axes_met < 2) return;
   // Fragments lie between the nodes around: a depth just above the last of them belongs to the next.
+  auto first_block = t.first_block, last_block = t.last_block;
   for (int axis = 0; axis < 3; ++axis) {
     const auto block_of = [](int node) { return node >= 0 ? node / (kFine * kLeafCells) : -1; };
     // Node 3i - 1 is the last one below face i, whose block is that of cell i. What lies on the grid's upper rim also
     // counts for the cells below it (slice_cells.cpp).
     const int first = std::min(block_of(fine.first[axis] - 1), (s.grid.cells[axis] - 1) / kLeafCells);
     const int last = block_of(fine.last[axis] + 2);
-    if (last < 0 || first >= s.blocks[axis]) return;
-    t.first_block[size_t(axis)] = std::uint8_t(std::max(first, 0));
-    t.last_block[size_t(axis)] = std::uint8_t(std::min(last, s.blocks[axis] - 1));
+    const int first_here = std::max(first, s.window.first[axis]), last_here = std::min(last, s.window.last[axis] - 1);
+    if (first_here > last_here) return;
+    first_block[size_t(axis)] = std::uint8_t(first_here);
+    last_block[size_t(axis)] = std::uint8_t(last_here);
   }
+  t.first_block = first_block;
+  t.last_block = last_block;
 }
 
 /// Calls visit(block) for every block of the triangle's box that its plane passes (all, for a few).
@@ -70,7 +74,7 @@ void for_each_block(const SlicedScene& s, const SliceTriangle& t, Visit&& visit)
   const glm::ivec3 last(t.last_block[0], t.last_block[1], t.last_block[2]);
   if (first.x > last.x) return;
   if (first == last) {
-    visit(size_t(block_index(s.blocks, first)));
+    visit(s.window.index(first));
     return;
   }
   const bool ask_plane = first.x < last.x && first.y < last.y && first.z < last.z;
@@ -85,7 +89,7 @@ void for_each_block(const SlicedScene& s, const SliceTriangle& t, Visit&& visit)
         const glm::ivec3 block(x, y, z);
         const glm::dvec3 centre = (glm::dvec3(block) + 0.5) * kEdge - glm::dvec3(t.vertex[0]);
         if (ask_plane && std::abs(glm::dot(normal, centre)) > reach) continue;
-        visit(size_t(block_index(s.blocks, block)));
+        visit(s.window.index(block));
       }
     }
   }
@@ -120,7 +124,7 @@ void place_triangles(SlicedScene& s, const std::vector<MeshRange>& ranges) {
 
 /// Fills `first` and `binned`. The order within a block depends on the threads; nothing made of it does.
 void bin_triangles(SlicedScene& s) {
-  const size_t blocks = size_t(s.blocks.x) * size_t(s.blocks.y) * size_t(s.blocks.z);
+  const size_t blocks = s.window.count();
   std::vector<std::atomic<std::uint32_t>> next(blocks);
   const tbb::blocked_range<size_t> all(0, s.triangles.size(), 1024);
   tbb::parallel_for(all, [&](const tbb::blocked_range<size_t>& part) {
@@ -147,21 +151,45 @@ void bin_triangles(SlicedScene& s) {
   });
 }
 
+void set_window(SlicedScene& s, const BlockBox& part) {
+  const glm::ivec3 all = leaf_blocks(s.grid), with_rim = s.grid.cells / kLeafCells + 1;
+  const glm::ivec3 around_y_and_z(0, 1, 1);
+  s.part = part;
+  s.held = {glm::max(part.first - around_y_and_z, 0), glm::min(part.last + around_y_and_z, all)};
+  s.window = {s.held.first, glm::min(part.last + 1, with_rim)};
+  const glm::ivec3 known = kSidesKnownAround * around_y_and_z;
+  s.first_cell = glm::max(kLeafCells * part.first - known, 0);
+  s.last_cell = glm::min(kLeafCells * part.last + known, s.grid.cells);
+  if (part.empty()) s.held = s.window = {part.first, part.first}, s.last_cell = s.first_cell;
+}
+
+/// Leaves out those that meet no block of the window. The others keep their order, and so do ties between them.
+void drop_triangles_elsewhere(SlicedScene& s) {
+  std::erase_if(s.triangles, [](const SliceTriangle& t) { return t.first_block[0] > t.last_block[0]; });
+  s.triangles.shrink_to_fit();
+}
+
 }  // namespace
 
-SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
+SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps, const BlockBox& part) {
   SlicedScene s;
   s.scene = &scene;
   s.mipmaps = &mipmaps;
   s.grid = grid;
-  s.blocks = grid.cells / kLeafCells + 1;
+  set_window(s, part);
   std::uint32_t count = 0;
   const std::vector<MeshRange> ranges = number_triangles(scene, count);
+  s.triangle_count = count;
   s.triangles.resize(count);
   if (count > 0) place_triangles(s, ranges);
+  if (part.count() < BlockBox{glm::ivec3(0), leaf_blocks(grid)}.count()) drop_triangles_elsewhere(s);
   s.constant = constant_materials(scene);
   bin_triangles(s);
   return s;
+}
+
+SlicedScene slice_scene(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps) {
+  return slice_scene(scene, grid, mipmaps, {glm::ivec3(0), leaf_blocks(grid)});
 }
 
 }  // namespace volgi::slicing

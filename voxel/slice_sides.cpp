@@ -36,12 +36,13 @@ BlockMask shifted_down(const BlockMask& own, const BlockMask& next, int axis) {
   return out;
 }
 
-BlockMask inside_mask(const Grid& grid, glm::ivec3 first_cell) {
-  const glm::ivec3 count = glm::clamp(grid.cells - first_cell, 0, kLeafCells);
-  const std::uint64_t row = (std::uint64_t(1) << count.z) - 1;
+BlockMask inside_mask(const SlicedScene& s, glm::ivec3 first_cell) {
+  const glm::ivec3 low = glm::clamp(s.first_cell - first_cell, 0, kLeafCells);
+  const glm::ivec3 high = glm::clamp(s.last_cell - first_cell, 0, kLeafCells);
+  const std::uint64_t row = ((std::uint64_t(1) << high.z) - 1) & ~((std::uint64_t(1) << low.z) - 1);
   BlockMask out{};
-  for (size_t x = 0; x < size_t(count.x); ++x) {
-    for (int y = 0; y < count.y; ++y) out[x] |= row << (8 * y);
+  for (int x = low.x; x < high.x; ++x) {
+    for (int y = low.y; y < high.y; ++y) out[size_t(x)] |= row << (8 * y);
   }
   return out;
 }
@@ -49,17 +50,17 @@ BlockMask inside_mask(const Grid& grid, glm::ivec3 first_cell) {
 CellFaces cell_faces(const SlicedScene& s, const BlockTable& table, glm::ivec3 block) {
   static const BlockFaces kNone{};
   const auto faces_of = [&](glm::ivec3 at) -> const BlockFaces& {
-    const auto& entry = table[size_t(block_index(s.blocks, at))];
+    const auto& entry = table[s.window.index(at)];
     return entry ? *entry : kNone;
   };
-  const BlockMask inside = inside_mask(s.grid, kLeafCells * block);
+  const BlockMask inside = inside_mask(s, kLeafCells * block);
   CellFaces out;
   const BlockFaces& own = faces_of(block);
   for (int axis = 0; axis < 3; ++axis) {
     const size_t a = size_t(axis);
     glm::ivec3 above = block;
     ++above[axis];
-    const BlockFaces& next = above[axis] < s.blocks[axis] ? faces_of(above) : kNone;
+    const BlockFaces& next = above[axis] < s.window.last[axis] ? faces_of(above) : kNone;
     out.sided[2 * a] = own.sided[a];
     out.opaque[2 * a] = own.opaque[a];
     out.sided[2 * a + 1] = shifted_down(own.sided[a], next.sided[a], axis);
@@ -111,8 +112,8 @@ class SideWriter {
     --below[axis];
     const Seen low = surface(record.low_triangle, record.low_sub, axis, face_cell);
     const bool same = record.low_triangle == record.high_triangle && record.low_sub == record.high_sub;
-    if (below[axis] >= 0) write_side(low, below, 2 * axis + 1, coverage);
-    if (face_cell[axis] >= s_.grid.cells[axis]) return;
+    if (s_.gets_sides(below)) write_side(low, below, 2 * axis + 1, coverage);
+    if (!s_.gets_sides(face_cell)) return;
     const Seen high = same ? low : surface(record.high_triangle, record.high_sub, axis, face_cell);
     write_side(high, face_cell, 2 * axis, coverage);
   }
@@ -168,12 +169,24 @@ class SideWriter {
   shared::Side* sides_;
 };
 
+/// Of the held blocks: the part's own first, then those around it.
+std::vector<glm::ivec3> blocks_in_order(const SlicedScene& s) {
+  std::vector<glm::ivec3> blocks;
+  blocks.reserve(s.held.count());
+  for (const bool own : {true, false}) {
+    for (size_t i = 0; i < s.held.count(); ++i) {
+      if (s.part.contains(s.held.block(i)) == own) blocks.push_back(s.held.block(i));
+    }
+  }
+  return blocks;
+}
+
 }  // namespace
 
 VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table) {
-  const glm::ivec3 blocks = leaf_blocks(s.grid);
-  const size_t count = size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z);
-  const auto block_at = [&](size_t i) { return block_coord(blocks, int(i)); };
+  const std::vector<glm::ivec3> blocks = blocks_in_order(s);
+  const size_t count = blocks.size();
+  const auto block_at = [&](size_t i) { return blocks[i]; };
   std::vector<std::uint32_t> first(count + 1, 0);  // side of each block
   tbb::parallel_for(size_t(0), count, [&](size_t i) { first[i + 1] = side_count(cell_faces(s, table, block_at(i))); });
   std::partial_sum(first.begin(), first.end(), first.begin());
@@ -182,13 +195,14 @@ VoxelGrid make_sides(const SlicedScene& s, const BlockTable& table) {
     tbb::parallel_for(size_t(0), count, [&](size_t i) {
       if (first[i] == first[i + 1]) return;
       const glm::ivec3 cell = kLeafCells * block_at(i);
-      leaves[i] = new VoxelGrid::Leaf(openvdb::Coord(cell.x, cell.y, cell.z), 0);
-      fill_leaf(cell_faces(s, table, block_at(i)), first[i], *leaves[i]);
+      VoxelGrid::Leaf*& leaf = leaves[s.held.index(block_at(i))];
+      leaf = new VoxelGrid::Leaf(openvdb::Coord(cell.x, cell.y, cell.z), 0);
+      fill_leaf(cell_faces(s, table, block_at(i)), first[i], *leaf);
     });
   };
   std::vector<shared::Side> sides;
   tbb::parallel_invoke(make_leaves, [&] { sides.resize(first[count]); });
-  VoxelGrid voxels(s.grid, std::move(sides), leaves);
+  VoxelGrid voxels(s.grid, std::move(sides), leaves, s.held, s.part, first[s.part.count()]);
   const SideWriter writer(s, voxels, voxels.mutable_sides().data());
   tbb::parallel_for(size_t(0), s.occupied.size(), [&](size_t i) {
     const BlockFaces* block = table[s.occupied[i]].get();

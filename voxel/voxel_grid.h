@@ -6,6 +6,7 @@
 #include "shaders/shared/side.shared.h"
 #include "voxel/grid.h"
 #include "voxel/openvdb_fwd.h"
+#include "voxel/part.h"
 
 namespace volgi {
 
@@ -27,7 +28,11 @@ inline int leaf_offset(glm::ivec3 cell) {
 /// Blocked faces and sides of a grid on the CPU; twin of VoxelGridGl. A sparse OpenVDB tree over the cells (index space
 /// is cell coordinates) says which sides a cell has: the uvec2 of side.shared.h, x in the low and y in the high half of
 /// an int64; leaves exist only where there are sides. Sides are a compact list, those of one cell beside each other in
-/// the order of faces; cells may come in any order. Memory: 4 KiB a leaf, 64 bytes a side, 8 bytes a block.
+/// the order of faces; cells may come in any order. Memory: 4 KiB a leaf, 64 bytes a side, 16 bytes a block.
+///
+/// A rank among several has the sides of its part of the blocks, first in the list, and behind them what it knows of
+/// its neighbours' within the `held` blocks (voxel/ranks_voxels.h); cells are numbered as in the whole grid all the
+/// same.
 class VoxelGrid {
  public:
   using CellSidesTree = vdb::Tree<std::int64_t>;
@@ -39,19 +44,25 @@ class VoxelGrid {
   VoxelGrid(const Grid& grid, std::vector<shared::Side> sides);
   /// The same where whoever made the sides has the leaves, one for each block with sides, null elsewhere; takes them.
   VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves);
+  /// A rank's: the leaves of `held`, the sides of the blocks of `part` first.
+  VoxelGrid(const Grid& grid, std::vector<shared::Side> sides, const std::vector<Leaf*>& leaves, const BlockBox& held,
+            const BlockBox& part, size_t part_sides);
 
   const Grid& grid() const { return grid_; }
   const std::vector<shared::Side>& sides() const { return sides_; }
   std::vector<shared::Side>& mutable_sides() { return sides_; }  // what does not change which faces have sides
-  size_t side_count() const { return sides_.size(); }
+  /// Without those of neighbours, which follow in sides().
+  size_t side_count() const { return part_sides_; }
   const CellSidesTree& cell_sides_tree() const { return *tree_; }
 
   /// Leaf of a block, or null where no cell of the block has a side. Two loads.
-  const Leaf* leaf(glm::ivec3 block) const { return leaves_[size_t(block_index(blocks_, block))]; }
+  const Leaf* leaf(glm::ivec3 block) const { return leaves_[held_.index(block)]; }
   glm::ivec3 blocks() const { return blocks_; }
-  /// (0, 0) for a cell without sides. The cell must lie inside the grid.
+  const BlockBox& part() const { return part_; }
+  const BlockBox& held() const { return held_; }
+  /// (0, 0) for a cell without sides. The cell must lie inside the grid, and its block be held.
   glm::uvec2 cell_sides(glm::ivec3 cell) const {
-    const std::int64_t* l = leaf_cells_[size_t(block_index(blocks_, cell >> kLeafShift))];
+    const std::int64_t* l = leaf_cells_[held_.index(cell >> kLeafShift)];
     return l == nullptr ? glm::uvec2(0) : unpack(l[leaf_offset(cell)]);
   }
   static glm::uvec2 unpack(std::int64_t v) { return {std::uint32_t(v), std::uint32_t(std::uint64_t(v) >> 32)}; }
@@ -59,16 +70,21 @@ class VoxelGrid {
 
   size_t bytes() const;
   /// What bytes() will be of so many sides in so many leaves.
-  static size_t bytes_for(const Grid& grid, size_t sides, size_t leaves);
+  static size_t bytes_for(const BlockBox& held, size_t sides, size_t leaves);
+  static size_t bytes_for(const Grid& grid, size_t sides, size_t leaves) {
+    return bytes_for(BlockBox{glm::ivec3(0), leaf_blocks(grid)}, sides, leaves);
+  }
 
  private:
   void point_to_cells();
 
   Grid grid_{};
   glm::ivec3 blocks_{0};
+  BlockBox held_, part_;
   std::vector<shared::Side> sides_;
+  size_t part_sides_ = 0;
   std::shared_ptr<CellSidesTree> tree_;
-  std::vector<const Leaf*> leaves_;              // by block
+  std::vector<const Leaf*> leaves_;              // by held block
   std::vector<const std::int64_t*> leaf_cells_;  // their buffers, without OpenVDB's question whether they are in memory
 };
 

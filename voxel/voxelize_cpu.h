@@ -2,6 +2,7 @@
 #include "core/mipmaps.h"
 #include "core/scene.h"
 #include "voxel/cell_volumes.h"
+#include "voxel/side_halo.h"
 #include "voxel/voxel_grid.h"
 
 namespace volgi {
@@ -14,7 +15,12 @@ namespace volgi {
 VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid);
 
-/// Occupancy, albedo, normal and emission per cell, from the same fragments.
+/// All ranks: each voxelizes what meets its part and seven cells around it, whose sides it knows but does not own, and
+/// has the same sides there as one rank alone, to the last bit. Triangles are read by all and kept by whom they meet.
+VoxelGrid voxelize_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps, const RanksOfVolume& ranks);
+
+/// Occupancy, albedo, normal and emission per cell, from the same fragments. @param part  the blocks wanted.
+CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps, const BlockBox& part);
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid, const Mipmaps& mipmaps);
 CellVolumes cell_volumes_cpu(const Scene& scene, const Grid& grid);
 

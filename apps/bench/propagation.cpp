@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/bench/closed_box.h"
 #include "apps/bench/timing.h"
 #include "propagation/bounces_cpu.h"
 #include "voxel/emitter_pieces.h"
@@ -36,8 +37,9 @@ void add_quad(Scene& scene, int material, glm::vec3 corner, glm::vec3 u, glm::ve
   scene.meshes.push_back(mesh);
 }
 
-/// closed_box (docs/hard-cases.md#scenes): a 2 m cube with an emitter 0.5 m square in the ceiling's middle.
-Scene closed_box() {
+}  // namespace
+
+Scene closed_box(float length) {
   Scene scene;
   scene.name = "closed_box";
   const int wall = add_material(scene, kAlbedo, 0.0f);
@@ -48,13 +50,16 @@ Scene closed_box() {
       n[axis] = side;
       a[(axis + 1) % 3] = 1.0f;
       b[(axis + 2) % 3] = -side;
-      add_quad(scene, wall, n - a - b, 2.0f * a, 2.0f * b);
+      const glm::vec3 stretched(1.0f, 1.0f, length);
+      add_quad(scene, wall, stretched * (n - a - b), stretched * (2.0f * a), stretched * (2.0f * b));
     }
   }
   add_quad(scene, lamp, {-0.25f, 0.999f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f});
   update_bounds(scene);
   return scene;
 }
+
+namespace {
 
 /// Everything that the solvers need of the box at one resolution.
 struct Box {

@@ -13,6 +13,7 @@
 #include "apps/bench/dong2009.h"
 #include "apps/bench/gpu.h"
 #include "apps/bench/lattice.h"
+#include "apps/bench/mpi.h"
 #include "apps/bench/nichols2010.h"
 #include "apps/bench/nichols2010_area.h"
 #include "apps/bench/propagation.h"
@@ -23,6 +24,7 @@
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_stats.h"
+#include "apps/volgi/program_ranks.h"
 #include "apps/volgi/volume_options.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -73,6 +75,7 @@ struct BenchCommand {
   void run_lattice(nlohmann::json& results) const;
   void run_nichols2010_area(nlohmann::json& results) const;
   void run_gpu(nlohmann::json& results) const;
+  void run_mpi(nlohmann::json& results) const;
   std::string gpu_command() const;
   std::vector<std::string> scenes_or(const std::vector<std::string>& usual) const {
     return scenes.empty() ? usual : scenes;
@@ -269,6 +272,11 @@ void BenchCommand::run_gpu(nlohmann::json& results) const {
   if (!page.empty()) write_text(page, gpu_page(r));
 }
 
+void BenchCommand::run_mpi(nlohmann::json& results) const {
+  results["mpi"] = bench_mpi(program_ranks(), largest_grid, frames);
+  if (is_first_rank()) show(mpi_table(results["mpi"]));
+}
+
 struct Benchmark {
   const char* name;
   void (BenchCommand::*run)(nlohmann::json&) const;
@@ -282,7 +290,8 @@ constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
                                      {"against-path-tracing", &BenchCommand::run_against_path_tracing},
                                      {"lattice", &BenchCommand::run_lattice},
                                      {"nichols2010_area", &BenchCommand::run_nichols2010_area},
-                                     {"gpu", &BenchCommand::run_gpu}};
+                                     {"gpu", &BenchCommand::run_gpu},
+                                     {"mpi", &BenchCommand::run_mpi}};
 
 std::string benchmark_names() {
   std::vector<const char*> names;
@@ -298,12 +307,13 @@ int BenchCommand::run() const {
   const auto asked = [this](const char* name) {
     return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
   };
+  if (names != std::vector<std::string>{"mpi"}) refuse_several_ranks("bench");
   if (!page.empty() && !asked("gpu")) throw Error(ExitCode::usage, "-o is the page of the benchmark gpu: name it too");
   nlohmann::json results;
   for (const Benchmark& benchmark : kBenchmarks) {
     if (asked(benchmark.name)) (this->*benchmark.run)(results);
   }
-  if (json) fmt::print("{}\n", results.dump(1));
+  if (json && is_first_rank()) fmt::print("{}\n", results.dump(1));
   return int(ExitCode::done);
 }
 
@@ -318,7 +328,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "those papers' tables and curves, 'nichols2010_area' that thesis' figures on area lights; 'lattice' measures the "
       "wave lattice and imperfect maps; 'against-path-tracing' tells how long "
       "path tracing takes to the error of --gi hybrid; "
-      "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error");
+      "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error; "
+      "'mpi', under mpirun, measures sweeps over ranks beside what a model says of them");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
   command->add_option("--data", options->data, "folder of cornell.glb")->capture_default_str();
   command->add_option("--generated", options->generated, "folder of atrium.glb")->capture_default_str();
@@ -347,7 +358,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--grid", options->grid_cells, "cells along the longest axis")
       ->check(CLI::Range(1, VolumeOptions::kMaxGridCells))
       ->capture_default_str();
-  command->add_option("--largest-grid", options->largest_grid, "cells on an edge, for propagation and voxelize")
+  command->add_option("--largest-grid", options->largest_grid, "cells on an edge, for propagation, voxelize and mpi")
       ->check(CLI::Range(32, VolumeOptions::kMaxGridCells))
       ->capture_default_str();
   command->add_option("--iterations", options->iterations, "passes over the volume")

@@ -6,11 +6,15 @@
 #include "apps/volgi/commands.h"
 #include "apps/volgi/failure.h"
 #include "apps/volgi/program_help.h"
+#include "apps/volgi/program_ranks.h"
 #include "core/error.h"
 #include "volgi_version.h"
 
-int main(int argc, char** argv) {
-  using namespace volgi;
+namespace {
+
+using namespace volgi;
+
+int run(int argc, char** argv, const app::ProgramRanks& ranks) {
   int exit_code = int(ExitCode::done);
   CLI::App app{"volgi: volume-based global illumination, and how wrong it is", "volgi"};
   app.set_version_flag("--version", VOLGI_VERSION);
@@ -26,6 +30,7 @@ int main(int argc, char** argv) {
   app::add_reference_command(app, exit_code);
   app::add_compare_command(app, exit_code);
   app::add_export_command(app, exit_code);
+  app::add_merge_command(app, exit_code);
   app::add_inspect_command(app, exit_code);
 #ifdef VOLGI_HAS_GL
   app::add_crosscheck_command(app, exit_code);
@@ -34,6 +39,9 @@ int main(int argc, char** argv) {
 #endif
   try {
     if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return exit_code;
+    const std::string command = argc > 1 ? argv[1] : "";
+    if (!command.starts_with("-") && command != "export" && command != "render" && command != "bench")
+      app::refuse_several_ranks(command.c_str());
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {
     return app.exit(e);
@@ -43,14 +51,28 @@ int main(int argc, char** argv) {
     return app.exit(e);
   } catch (const CLI::RequiredError& e) {
     const bool unknown = argc > 1 && app.get_subcommands().empty();
-    std::cerr << "volgi: " << (unknown ? "no command '" + std::string(argv[1]) + "'" : e.what())
-              << " (see volgi --help)\n";
+    if (app::is_first_rank())
+      std::cerr << "volgi: " << (unknown ? "no command '" + std::string(argv[1]) + "'" : e.what())
+                << " (see volgi --help)\n";
     return int(ExitCode::usage);
   } catch (const CLI::ParseError& e) {
-    std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
+    if (app::is_first_rank()) std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
     return int(ExitCode::usage);
+  } catch (...) {
+    const int code = ranks.say_failure();
+    ranks.end_all(code);
+    return code;
+  }
+  return app::with_output_written(exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const app::ProgramRanks ranks(argc, argv);
+    return run(argc, argv, ranks);
   } catch (...) {
     return app::say_failure();
   }
-  return app::with_output_written(exit_code);
 }

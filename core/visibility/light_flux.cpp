@@ -105,9 +105,9 @@ std::vector<FluxSample> row_flux(const EmbreeScene& embree, const Layer& layer, 
   return samples;
 }
 
-}  // namespace
-
-std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge) {
+/// By row of all layers; rows first, first + step, ... alone.
+std::vector<std::vector<FluxSample>> rows_flux(const EmbreeScene& embree, int texels_on_edge, size_t first,
+                                               size_t step) {
   assert(texels_on_edge >= 16);
   struct Row {
     const Layer* layer;
@@ -119,10 +119,26 @@ std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge
     for (int row = 0; row < layer.resolution; ++row) rows.push_back({&layer, row});
   }
   std::vector<std::vector<FluxSample>> found(rows.size());
-  oneapi::tbb::parallel_for(size_t(0), rows.size(),
+  oneapi::tbb::parallel_for(first, rows.size(), step,
                             [&](size_t i) { found[i] = row_flux(embree, *rows[i].layer, rows[i].row); });
+  return found;
+}
+
+}  // namespace
+
+std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge) {
   std::vector<FluxSample> samples;
-  for (const std::vector<FluxSample>& row : found) samples.insert(samples.end(), row.begin(), row.end());
+  for (const std::vector<FluxSample>& row : rows_flux(embree, texels_on_edge, 0, 1))
+    samples.insert(samples.end(), row.begin(), row.end());
+  return samples;
+}
+
+std::vector<NumberedFluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge, int rank, int ranks) {
+  std::vector<NumberedFluxSample> samples;
+  const auto rows = rows_flux(embree, texels_on_edge, size_t(rank), size_t(ranks));
+  for (std::uint64_t row = 0; row < rows.size(); ++row) {
+    for (std::uint64_t i = 0; i < rows[row].size(); ++i) samples.push_back({rows[row][i], row << 32 | i});
+  }
   return samples;
 }
 

@@ -15,4 +15,7 @@ namespace volgi {
 /// least 16.
 std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge);
 
+/// One rank's share of the rays; their numbers are in the order of those of all ranks together.
+std::vector<NumberedFluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge, int rank, int ranks);
+
 }  // namespace volgi

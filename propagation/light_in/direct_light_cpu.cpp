@@ -40,9 +40,31 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
   return flux;
 }
 
+SideFlux DirectLightCpu::flux(const VoxelGrid& voxels, const RanksOfVolume& ranks) const {
+  SideFlux flux;
+  flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+  flux.punctual = flux.emitted;
+  const std::vector<FluxSample> pieces = emitter_pieces(scene_, voxels.grid());
+  flux.emits = !pieces.empty();
+  const auto rank = size_t(ranks.ranks.rank()), count = size_t(ranks.ranks.count());
+  std::vector<NumberedFluxSample> shared_out;
+  for (size_t i = rank; i < pieces.size(); i += count) shared_out.push_back({pieces[i], i});
+  deposit(voxels, ranks, shared_out, flux.emitted, flux.lost);
+  if (embree_) {
+    const auto lit = light_flux(*embree_, light_texels(voxels.grid()), int(rank), int(count));
+    deposit(voxels, ranks, lit, flux.punctual, flux.lost);
+  }
+  return flux;
+}
+
+SideFlux direct_light(const Scene& scene, const VolumeCpu& volume) {
+  const DirectLightCpu light(scene);
+  return volume.ranks() != nullptr ? light.flux(volume.voxels(), *volume.ranks()) : light.flux(volume.voxels());
+}
+
 void run_with_direct_light(VolumeCpu& volume, const Scene& scene) {
   volume.voxelize();
-  volume.light_in(DirectLightCpu(scene).flux(volume.voxels()));
+  volume.light_in(direct_light(scene, volume));
   volume.propagate();
   volume.irradiate();
 }

@@ -20,11 +20,16 @@ class DirectLightCpu {
   void scene_moved();
   /// Cost: some 16 rays for each lit cell's face.
   SideFlux flux(const VoxelGrid& voxels) const;
+  /// All ranks, the rays shared out; each has the whole scene's tree.
+  SideFlux flux(const VoxelGrid& voxels, const RanksOfVolume& ranks) const;
 
  private:
   const Scene& scene_;
   std::unique_ptr<EmbreeScene> embree_;  // none without punctual lights
 };
+
+/// Direct light of a volume, or of a rank's part of one.
+SideFlux direct_light(const Scene& scene, const VolumeCpu& volume);
 
 /// All of a volume: voxels, direct light, propagation, irradiance.
 void run_with_direct_light(VolumeCpu& volume, const Scene& scene);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cassert>
 #include <cstdlib>
+#include <iterator>
 #include <new>
 
 #include "propagation/lobes/sh_lobes_kernels.h"
@@ -29,13 +30,13 @@ float* zero_leaf() {
 
 int LeafNumbers::beside(int number_of, int face) const {
   const glm::ivec3 b = block(number_of) + shared::face_step(face);
-  const bool inside = glm::all(glm::greaterThanEqual(b, glm::ivec3(0))) && glm::all(glm::lessThan(b, blocks_));
+  const bool inside = glm::all(glm::greaterThanEqual(b, first_)) && glm::all(glm::lessThan(b, first_ + blocks_));
   return inside ? number(b) : -1;
 }
 
 LobeVolume::LobeVolume(const LeafNumbers& numbers, int coefficients)
     : leaf_floats_(size_t(coefficients * kLobeBands * kLobeLeafCells)),
-      chunk_leaves_(std::min(kChunkLeaves, size_t(numbers.count()))),
+      chunk_leaves_(std::clamp(size_t(numbers.count()), size_t(1), kChunkLeaves)),
       table_(size_t(numbers.count()), zero_leaf()),
       slot_of_(size_t(numbers.count()), -1) {
   assert(coefficients <= 9);
@@ -91,6 +92,12 @@ void LobeVolume::assign(std::vector<int> numbers) {
     rows_written_[size_t(of_leaf)] = kAllRows;
     table_[size_t(n)] = slot(of_leaf);
   }
+}
+
+void LobeVolume::add(const std::vector<int>& numbers) {
+  std::vector<int> all;
+  std::merge(leaves_.begin(), leaves_.end(), numbers.begin(), numbers.end(), std::back_inserter(all));
+  assign(std::move(all));
 }
 
 void LobeVolume::drop(std::span<const char> dropped) {

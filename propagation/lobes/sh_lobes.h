@@ -12,19 +12,30 @@ namespace volgi {
 /// Leaves of 8^3 cells by number, z fastest, so that leaves that share most cache lines are neighbours in memory too.
 class LeafNumbers {
  public:
-  explicit LeafNumbers(glm::ivec3 cells) : blocks_((cells + (kLeafCells - 1)) / kLeafCells) {}
+  explicit LeafNumbers(glm::ivec3 cells)
+      : LeafNumbers(BlockBox{glm::ivec3(0), (cells + (kLeafCells - 1)) / kLeafCells},
+                    BlockBox{glm::ivec3(0), (cells + (kLeafCells - 1)) / kLeafCells}) {}
+  /// Of a rank: those of its part, and those around them that it looks at.
+  LeafNumbers(const BlockBox& held, const BlockBox& part) : first_(held.first), blocks_(held.size()), part_(part) {}
   int count() const { return blocks_.x * blocks_.y * blocks_.z; }
   glm::ivec3 blocks() const { return blocks_; }
-  int number(glm::ivec3 block) const { return block.z + blocks_.z * (block.y + blocks_.y * block.x); }
+  int number(glm::ivec3 block) const {
+    block -= first_;
+    return block.z + blocks_.z * (block.y + blocks_.y * block.x);
+  }
   glm::ivec3 block(int number) const {
     const int column = number / blocks_.z;
-    return {column / blocks_.y, column % blocks_.y, number - column * blocks_.z};
+    return first_ + glm::ivec3(column / blocks_.y, column % blocks_.y, number - column * blocks_.z);
   }
+  /// Whether it is of the part.
+  bool own(int number) const { return part_.contains(block(number)); }
+  const BlockBox& part() const { return part_; }
   /// Leaf across face `face` of leaf `number`; -1 outside the grid.
   int beside(int number, int face) const;
 
  private:
-  glm::ivec3 blocks_;
+  glm::ivec3 first_{0}, blocks_;
+  BlockBox part_;
 };
 
 /// Lobes of a volume's cells, sparse: a leaf of 8^3 cells for each block that holds light, [coefficient][band][512]
@@ -45,6 +56,8 @@ class LobeVolume {
 
   /// These leaves and no others, their lobes unset; a leaf that there was keeps its memory. @param numbers  ascending.
   void assign(std::vector<int> numbers);
+  /// These as well, which there were not. @param numbers  ascending.
+  void add(const std::vector<int>& numbers);
   /// Of a leaf that there is: rows (LeafLight) in which its memory may hold anything but zeros. All rows, unless the
   /// writer of the leaf says which.
   std::uint64_t& rows_written(int number) { return rows_written_[size_t(slot_of_[size_t(number)])]; }

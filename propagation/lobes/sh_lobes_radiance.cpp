@@ -44,6 +44,7 @@ float* LobeSum::leaf(int number) {
 void LobeSum::add(const LobeVolume& lobes, const LobeKernels& kernels) {
   tbb::parallel_for(size_t(0), lobes.leaves().size(), [&](size_t i) {
     const int number = lobes.leaves()[i];
+    if (!numbers_.own(number)) return;
     const float* from = lobes.leaf(number);
     float* to = leaf(number);
     alignas(64) float carried[9 * kLobeBands * kLobeLeafCells];

@@ -48,6 +48,7 @@ void add_sides(LeafWalls& walls, const VoxelGrid& voxels, const VoxelGrid::Leaf&
 std::vector<std::unique_ptr<LeafWalls>> collect_walls(const VoxelGrid& voxels, const LeafNumbers& numbers) {
   std::vector<std::unique_ptr<LeafWalls>> all(size_t(numbers.count()));
   for (int n = 0; n < numbers.count(); ++n) {
+    if (!numbers.own(n)) continue;
     const glm::ivec3 block = numbers.block(n);
     const glm::ivec3 lowest = kLeafCells * block;
     const bool outside = glm::any(glm::greaterThan(lowest + kLeafCells, voxels.grid().cells));

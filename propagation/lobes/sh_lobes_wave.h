@@ -6,21 +6,24 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/ranks.h"
 #include "propagation/lobes/sh_lobes.h"
 #include "propagation/lobes/sh_lobes_kernels.h"
+#include "voxel/side_halo.h"
 
 namespace volgi {
 
 /// Light in flight: two states of lobes, and which leaves take part in a pass. Leaves join as light arrives in them and
-/// drop out when they are dark; what passes do is up to the scheme.
+/// drop out when they are dark; what passes do is up to the scheme. A rank's wave is of the leaves of its part, and has
+/// the outermost cells of those beside them from their ranks before every pass.
 class LobeWave {
   struct LitRows {
     std::uint64_t any = 0, low = 0, high = 0;  // LeafLight
   };
 
  public:
-  LobeWave(const LeafNumbers& numbers, int coefficients)
-      : numbers_(numbers), now_(numbers, coefficients), next_(numbers, coefficients), lit_(size_t(numbers.count())) {}
+  /// @param ranks  that the numbers are of a part of; null: there is one. All then do everything together.
+  LobeWave(const LeafNumbers& numbers, int coefficients, const RanksOfVolume* ranks = nullptr);
 
   /// Starts over. @param fill  (number of leaf, its lobes unset, LeafLight&).
   template <typename Fill>
@@ -31,7 +34,7 @@ class LobeWave {
 
   const LeafNumbers& numbers() const { return numbers_; }
   const LobeVolume& now() const { return now_; }
-  glm::dvec3 in_flight() const { return in_flight_; }  // power per band [W], added up leaf by leaf
+  glm::dvec3 in_flight() const { return in_flight_; }  // power per band [W], of all ranks
   /// The leaves beside one: of zeros where there are none.
   void find_beside(int number, const float* beside[6]) const;
   /// Rows of a leaf (LeafLight) that a pass may leave light in: those with light and those beside them.
@@ -59,6 +62,19 @@ class LobeWave {
   static void for_leaves(size_t count, const F& f);
   std::vector<int> reached() const;
   void settle(LobeVolume& lobes);
+  void find_partners();
+  void fetch_beside();
+  /// What a leaf shows a leaf of another rank: its number there, and of which of its faces.
+  struct Shown {
+    int number, face;
+  };
+  struct Partner {
+    int rank;
+    std::vector<Shown> own;  // leaves that it looks at
+    Ranks::Bytes to, from;   // room for all
+  };
+  size_t shown_floats() const { return now_.leaf_floats() / kLobeLeafCells * 64; }
+  size_t shown_bytes() const;
 
   LeafNumbers numbers_;
   LobeVolume now_, next_;
@@ -67,6 +83,8 @@ class LobeWave {
   glm::dvec3 in_flight_{0.0};
   bool dense_ = false;
   bool streams_ = false;
+  const RanksOfVolume* ranks_ = nullptr;
+  std::vector<Partner> partners_;
 };
 
 /// The rim of a pulse thins out by powers and would end in denormal numbers, many times slower: they count as zero.
@@ -99,6 +117,7 @@ void LobeWave::start(std::vector<int> leaves, const Fill& fill) {
   light_.resize(now_.leaves().size());
   for_leaves(light_.size(), [&](size_t i) { fill(now_.leaves()[i], now_.leaf(now_.leaves()[i]), light_[i]); });
   settle(now_);
+  fetch_beside();
 }
 
 template <typename PassLeaf>
@@ -109,6 +128,7 @@ void LobeWave::step(const PassLeaf& pass_leaf) {
   for_leaves(light_.size(), [&](size_t i) { pass_leaf(next_.leaves()[i], next_.leaf(next_.leaves()[i]), light_[i]); });
   settle(next_);
   now_.swap(next_);
+  fetch_beside();
 }
 
 }  // namespace volgi

@@ -1,0 +1,218 @@
+#include "propagation/sweep/sweep_pipeline.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace volgi {
+
+namespace {
+
+// Of several ranks. Two blocks of 16 cells: a task of a 64^3 part takes a millisecond, a hundred times what a message
+// does, and the last rank of a row of P starts after P of them (docs/results/mpi.md).
+constexpr int kChunkBlocks = 2;
+
+bool flows_up(int octant, int axis) { return ((octant >> axis) & 1) != 0; }
+
+}  // namespace
+
+int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& part) {
+  return std::max(1, ranks == nullptr ? part.size().x : std::min(kChunkBlocks, part.size().x));
+}
+
+SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats)
+    : ranks_(ranks), size_(part.size()), face_floats_(face_floats), chunk_blocks_(chunk_blocks_of(ranks, part)) {
+  chunks_ = (size_.x + chunk_blocks_ - 1) / chunk_blocks_;
+  for (int octant = 0; octant < 8; ++octant) {
+    for (int axis = 1; axis <= 2; ++axis) {
+      Flow& flow = flows_[size_t(octant)][size_t(axis - 1)];
+      flow.faces = faces_of(part, chunk_blocks_, axis);
+      if (ranks != nullptr) {
+        const int up = flows_up(octant, axis) ? 1 : -1;
+        flow.from = ranks->decomposition.beside(ranks->ranks.rank(), axis, -up);
+        flow.to = ranks->decomposition.beside(ranks->ranks.rank(), axis, up);
+      }
+      for (size_t i = 0; i < (flow.beside() ? 2u : 1u); ++i)
+        flow.planes[i].resize(header_bytes(flow.faces) + flow.faces * face_floats_ * sizeof(float));
+    }
+    const size_t rows = size_t(size_.y) * size_t(size_.z);
+    if (chunks_ > 1) carried_[size_t(octant)].resize(rows * face_floats_);
+    if (chunks_ > 1) carried_lit_[size_t(octant)].resize(rows);
+  }
+}
+
+void SweepPipeline::start(bool in_order) {
+  in_order_ = in_order;
+  done_ = {};
+  for (auto& octant : flows_) {
+    for (Flow& flow : octant) flow.come = 0;
+  }
+}
+
+SweepPipeline::Plane SweepPipeline::plane(Task task, int axis) {
+  Flow& flow = flows_[size_t(task.octant)][size_t(axis - 1)];
+  std::byte* bytes = flow.planes[flow.place(task.chunk)].data();
+  return {reinterpret_cast<unsigned char*>(bytes), reinterpret_cast<float*>(bytes + header_bytes(flow.faces)),
+          flow.faces};
+}
+
+float* SweepPipeline::carried(int octant, size_t row) {
+  return chunks_ > 1 ? carried_[size_t(octant)].data() + row * face_floats_ : nullptr;
+}
+
+/// Lit faces to the front. @return  bytes of the message.
+size_t SweepPipeline::pack(Buffer& plane, size_t faces) const {
+  const auto* lit = reinterpret_cast<const unsigned char*>(plane.data());
+  std::byte* const values = plane.data() + header_bytes(faces);
+  const size_t face_bytes = face_floats_ * sizeof(float);
+  size_t count = 0;
+  for (size_t i = 0; i < faces; ++i) {
+    if (lit[i] == 0) continue;
+    if (count != i) std::memcpy(values + count * face_bytes, values + i * face_bytes, face_bytes);
+    ++count;
+  }
+  return header_bytes(faces) + count * face_bytes;
+}
+
+/// And back.
+void SweepPipeline::unpack(Buffer& plane, size_t faces) const {
+  const auto* lit = reinterpret_cast<const unsigned char*>(plane.data());
+  std::byte* const values = plane.data() + header_bytes(faces);
+  const size_t face_bytes = face_floats_ * sizeof(float);
+  auto count = size_t(std::count_if(lit, lit + faces, [](unsigned char l) { return l != 0; }));
+  for (size_t i = faces; i-- > 0 && count > 0;) {
+    if (lit[i] == 0) continue;
+    if (--count != i) std::memcpy(values + i * face_bytes, values + count * face_bytes, face_bytes);
+  }
+}
+
+/// Takes what has come and asks for the next, where there is room for it. @return  whether anything has.
+bool SweepPipeline::progress() {
+  bool any = false;
+  for (int octant = 0; octant < 8; ++octant) {
+    for (int a = 0; a < 2; ++a) {
+      Flow& flow = flows_[size_t(octant)][size_t(a)];
+      for (MessagePtr& leaving : flow.leaving) {
+        if (leaving == nullptr || !leaving->done()) continue;
+        leaving.reset();
+        any = true;
+      }
+      if (flow.from < 0 || flow.faces == 0) continue;
+      if (flow.coming != nullptr && flow.coming->done()) {
+        unpack(flow.planes[flow.place(flow.come)], flow.faces);
+        flow.coming.reset();
+        ++flow.come;
+        any = true;
+      }
+      const size_t place = flow.place(flow.come);
+      const bool room = flow.come < done_[size_t(octant)] + 2 && flow.leaving[place] == nullptr;
+      if (flow.coming == nullptr && flow.come < chunks_ && room)
+        flow.coming = ranks_->ranks.receive(flow.from, 2 * octant + a, flow.planes[place]);
+    }
+  }
+  return any;
+}
+
+bool SweepPipeline::is_ready(int octant) {
+  const int chunk = done_[size_t(octant)];
+  if (chunk == chunks_) return false;
+  for (const Flow& flow : flows_[size_t(octant)]) {
+    if (flow.faces == 0) continue;
+    const bool here = flow.from >= 0 ? flow.come > chunk : flow.leaving[flow.place(chunk)] == nullptr;
+    if (!here) return false;
+  }
+  return true;
+}
+
+int SweepPipeline::stages_behind(int octant) const {
+  int stages = chunks_ - done_[size_t(octant)];
+  if (ranks_ == nullptr) return stages;
+  const glm::ivec2 along = ranks_->decomposition.along_yz(), at = ranks_->decomposition.place(ranks_->ranks.rank());
+  for (int a = 0; a < 2; ++a) stages += flows_up(octant, a + 1) ? along[a] - 1 - at[a] : at[a];
+  return stages;
+}
+
+void SweepPipeline::wait_for_messages() {
+  std::vector<Ranks::Message*> pending;
+  for (auto& octant : flows_) {
+    for (Flow& flow : octant) {
+      for (Ranks::Message* m : {flow.coming.get(), flow.leaving[0].get(), flow.leaving[1].get()}) {
+        if (m != nullptr) pending.push_back(m);
+      }
+    }
+  }
+  ranks_->ranks.wait_any(pending);
+}
+
+std::vector<SweepPipeline::Task> SweepPipeline::next(size_t most) {
+  for (;;) {
+    if (ranks_ != nullptr) progress();
+    std::vector<Task> ready;
+    bool all_done = true;
+    for (int octant = 0; octant < 8; ++octant) {
+      if (done_[size_t(octant)] == chunks_) continue;
+      if (is_ready(octant)) ready.push_back({octant, done_[size_t(octant)]});
+      all_done = false;
+      if (in_order_) break;
+    }
+    if (all_done) return {};
+    if (!ready.empty()) {
+      std::stable_sort(ready.begin(), ready.end(),
+                       [&](Task a, Task b) { return stages_behind(a.octant) > stages_behind(b.octant); });
+      ready.resize(std::min(ready.size(), most));
+      return ready;
+    }
+    wait_for_messages();
+  }
+}
+
+void SweepPipeline::finished(Task task) {
+  ++done_[size_t(task.octant)];
+  for (int a = 0; a < 2; ++a) {
+    Flow& flow = flows_[size_t(task.octant)][size_t(a)];
+    if (flow.to < 0 || flow.faces == 0) continue;
+    const size_t place = flow.place(task.chunk);
+    const size_t bytes = pack(flow.planes[place], flow.faces);
+    flow.leaving[place] = ranks_->ranks.send(flow.to, 2 * task.octant + a, std::span(flow.planes[place]).first(bytes));
+    traffic_.messages += 1;
+    traffic_.bytes += bytes;
+  }
+}
+
+void SweepPipeline::end() {
+  if (ranks_ == nullptr) return;
+  const auto under_way = [](const auto& octant) {
+    return std::any_of(octant.begin(), octant.end(),
+                       [](const Flow& flow) { return flow.leaving[0] != nullptr || flow.leaving[1] != nullptr; });
+  };
+  for (;;) {
+    progress();
+    if (std::none_of(flows_.begin(), flows_.end(), under_way)) return;
+    wait_for_messages();
+  }
+}
+
+size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+  const int chunk_blocks = chunk_blocks_of(ranks, part);
+  const bool several_chunks = part.size().x > chunk_blocks;
+  size_t bytes = 0;
+  for (int axis = 1; axis <= 2; ++axis) {
+    const bool beside = ranks != nullptr && ranks->decomposition.along_yz()[axis - 1] > 1;
+    const size_t faces = faces_of(part, chunk_blocks, axis);
+    bytes += (beside ? 2 : 1) * (header_bytes(faces) + faces * face_floats * sizeof(float));
+  }
+  if (several_chunks) bytes += size_t(part.size().y) * size_t(part.size().z) * (face_floats * sizeof(float) + 1);
+  return 8 * bytes;
+}
+
+size_t SweepPipeline::bytes() const {
+  size_t bytes = 0;
+  for (size_t octant = 0; octant < 8; ++octant) {
+    for (const Flow& flow : flows_[octant]) bytes += flow.planes[0].size() + flow.planes[1].size();
+    bytes += carried_[octant].size() * sizeof(float) + carried_lit_[octant].size();
+  }
+  return bytes;
+}
+
+}  // namespace volgi

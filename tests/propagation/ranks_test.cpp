@@ -1,0 +1,171 @@
+// A volume that ranks hold together is that of one rank alone, bit for bit: sides, light, bounces, radiance.
+#include <gtest/gtest.h>
+#include <openvdb/openvdb.h>
+
+#include <map>
+#include <mutex>
+
+#include "core/ranks_in_threads.h"
+#include "core/scene.h"
+#include "core/sky.h"
+#include "propagation/light_in/direct_light_cpu.h"
+#include "propagation/volume_cpu.h"
+#include "tests/support/paths.h"
+#include "tests/support/volume_scenes.h"
+#include "tests/voxel/white_pocket_scenes.h"
+
+namespace volgi::test {
+namespace {
+
+struct SideValues {
+  shared::Side side;
+  glm::vec4 direct, indirect, emitted, punctual;
+};
+
+/// What a volume has at its sides, by cell and face, and its radiance.
+struct Answer {
+  std::map<std::pair<int, int>, SideValues> sides;
+  std::map<std::array<int, 3>, std::array<glm::vec3, 4>> radiance;
+  glm::vec3 lost{0.0f};
+  BounceReport report;
+
+  void take(VolumeCpu& volume) {
+    for (size_t i = 0; i < volume.voxels().side_count(); ++i) {
+      const shared::Side& side = volume.voxels().sides()[i];
+      const bool fresh = sides
+                             .insert({{side.cell, side.face},
+                                      {side, volume.irradiance().direct[i], volume.irradiance().indirect[i],
+                                       volume.flux().emitted[i], volume.flux().punctual[i]}})
+                             .second;
+      EXPECT_TRUE(fresh) << "two ranks have the same side";
+    }
+    lost = volume.flux().lost;
+    report = volume.report();
+  }
+  void take(const RadianceVolume& volume) {
+    for (size_t k = 0; k < volume.sh.size(); ++k) {
+      for (auto v = volume.sh[k]->cbeginValueOn(); v; ++v)
+        radiance[{v.getCoord().x(), v.getCoord().y(), v.getCoord().z()}][k] = {(*v)[0], (*v)[1], (*v)[2]};
+    }
+  }
+};
+
+Answer answer_of(const Scene& scene, const VolumeOptions& options, int ranks) {
+  Answer answer;
+  std::mutex mutex;
+  const auto work = [&](const Ranks* of) {
+    VolumeCpu volume(scene, options, of);
+    run_with_direct_light(volume, scene);
+    const RadianceVolume radiance = volume.radiance();
+    const std::lock_guard lock(mutex);
+    answer.take(volume);
+    answer.take(radiance);
+  };
+  if (ranks == 1) {
+    work(nullptr);
+  } else {
+    run_ranks_in_threads(ranks, [&](const Ranks& of) { work(&of); });
+  }
+  return answer;
+}
+
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof(T)) == 0;
+}
+
+void expect_same(const Answer& one, const Answer& many, const std::string& what) {
+  ASSERT_EQ(one.sides.size(), many.sides.size()) << what;
+  size_t geometry = 0, flux = 0, irradiance = 0;
+  for (auto a = one.sides.begin(), b = many.sides.begin(); a != one.sides.end(); ++a, ++b) {
+    ASSERT_EQ(a->first, b->first) << what;
+    geometry += !same_bits(a->second.side, b->second.side);
+    flux += !same_bits(a->second.emitted, b->second.emitted) || !same_bits(a->second.punctual, b->second.punctual);
+    irradiance += !same_bits(a->second.direct, b->second.direct) || !same_bits(a->second.indirect, b->second.indirect);
+  }
+  EXPECT_EQ(geometry, 0u) << what;
+  EXPECT_EQ(flux, 0u) << what;
+  EXPECT_EQ(irradiance, 0u) << what;
+  EXPECT_TRUE(same_bits(one.lost, many.lost)) << what;
+  EXPECT_TRUE(same_bits(one.report.sent, many.report.sent) && same_bits(one.report.left, many.report.left)) << what;
+  EXPECT_EQ(one.report.passes, many.report.passes) << what;
+  EXPECT_EQ(one.radiance == many.radiance, true) << what;
+}
+
+Scene data_scene(const char* name) { return load_scene(source_dir() / "data" / (std::string(name) + ".glb")); }
+
+TEST(Ranks, OrdinatesBitEqualToOne) {
+  for (const char* name : {"cornell", "room"}) {
+    const Scene scene = data_scene(name);
+    VolumeOptions options;
+    options.grid_cells = 64;
+    const Answer one = answer_of(scene, options, 1);
+    EXPECT_GT(one.sides.size(), 10000u);
+    EXPECT_TRUE(one.report.conjugate_gradients);
+    for (int ranks : {2, 3, 4, 8})
+      expect_same(one, answer_of(scene, options, ranks), fmt::format("{}, {}", name, ranks));
+  }
+}
+
+// More ranks than blocks along an axis, cells that fill no last block, and a sky that streams in at the rim.
+TEST(Ranks, OddShapesUnderASky) {
+  Scene scene;
+  const int grey = add_material(scene, glm::vec3(0.6f)), lamp = add_material(scene, glm::vec3(0.2f), glm::vec3(3.0f));
+  add_box_inside(scene, grey, glm::vec3(0.0f), {1.0f, 0.31f, 0.52f},
+                 glm::mat3(glm::rotate(glm::mat4(1.0f), 0.3f, glm::vec3(1.0f, 2.0f, 3.0f))));
+  scene.meshes.erase(scene.meshes.begin() + 3);  // open on one side
+  add_square(scene, lamp, {0.2f, 0.1f, 0.0f}, {0.3f, 1.0f, 0.2f}, 0.1f);
+  update_bounds(scene);
+  scene.sky = std::make_shared<Sky>(glm::vec3(0.5f, 0.7f, 1.0f));
+  for (const int cells : {7, 30, 45}) {
+    VolumeOptions options;
+    options.grid_cells = cells;
+    const Answer one = answer_of(scene, options, 1);
+    for (const int ranks : {2, 5, 8})
+      expect_same(one, answer_of(scene, options, ranks), fmt::format("{} cells, {}", cells, ranks));
+  }
+}
+
+// Places that no light leaves go on from part to part; orders one by one, and sweeps of few directions.
+TEST(Ranks, WhiteMazesAndPlainOrders) {
+  for (const PocketScene& pocket : pocket_scenes()) {
+    Scene scene = pocket.scene;
+    const int lamp = add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f));
+    add_square(scene, lamp, {-0.85f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f}, 0.05f);
+    VolumeOptions options;
+    options.grid_cells = 40;
+    options.bounces = 3;
+    options.scheme.directions = 24;
+    expect_same(answer_of(scene, options, 1), answer_of(scene, options, 4), pocket.name);
+  }
+}
+
+// Passes over a volume whose parts show each other their outermost cells after each.
+TEST(Ranks, ConservativeBitEqualToOne) {
+  for (const char* name : {"cornell", "room"}) {
+    const Scene scene = data_scene(name);
+    VolumeOptions options;
+    options.scheme.scheme = Scheme::conservative;
+    options.scheme.coarse_start = false;
+    options.grid_cells = 36;
+    options.bounces = 1;
+    const Answer one = answer_of(scene, options, 1);
+    EXPECT_GT(one.report.passes, 50);
+    for (const int ranks : {2, 3, 8})
+      expect_same(one, answer_of(scene, options, ranks), fmt::format("{}, {}", name, ranks));
+  }
+}
+
+// One that throws does not leave the others waiting.
+TEST(Ranks, OneThatFailsEndsAll) {
+  EXPECT_THROW(run_ranks_in_threads(3,
+                                    [](const Ranks& ranks) {
+                                      if (ranks.rank() == 1) throw std::runtime_error("gone");
+                                      std::array<std::int64_t, 1> one{1};
+                                      ranks.add(one);
+                                    }),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace volgi::test
