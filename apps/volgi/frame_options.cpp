@@ -62,12 +62,16 @@ screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const 
   o.without = without;
   o.bounces = volume.bounces;
   o.of<VolumeOptions>() = volume.volume_options();
+  set_parameters(o);
+  return o;
+}
+
+void FrameCommandOptions::set_parameters(screen::FrameOptions& o) const {
   for (const auto& [name, text] : flagged) {
     const screen::Parameter& p = screen::find_parameter(name);
     p.set(o.settings, screen::parse_value(p, text, std::string(p.flag) + " " + text));
   }
   for (const std::string& text : parameters) screen::set_parameter(o.settings, text);
-  return o;
 }
 
 bool FrameCommandOptions::given() const {
@@ -83,6 +87,7 @@ std::string FrameCommandOptions::technique() const {
 screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
   screen::FrameOptions o = without_recipe(size);
   screen::apply_recipe(technique(), o);
+  set_parameters(o);  // once more: what was asked for goes over what the recipe prefers
   // Says what does not go together before anything is loaded.
   for (const screen::StageType* stage : screen::recipe_of(o).stages) stage->role(o);
   return o;

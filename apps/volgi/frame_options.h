@@ -33,6 +33,7 @@ struct FrameCommandOptions {
 
  private:
   screen::FrameOptions without_recipe(glm::ivec2 size) const;
+  void set_parameters(screen::FrameOptions& o) const;
 };
 
 }  // namespace volgi::app
