@@ -62,4 +62,6 @@ install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOC
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT programs)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/volgi-dev RENAME copyright
   COMPONENT development)
-include(CPack)
+if(PROJECT_IS_TOP_LEVEL)  # a project that has this one inside has packages of its own
+  include(CPack)
+endif()

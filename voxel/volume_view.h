@@ -36,7 +36,7 @@ void suit_range(const VolumeField& field, const VolumeScalars& scalars, VolumeLo
 /// turned away. Cells without a value are grey, or nothing in space; those that are no number magenta. Captions and a
 /// colour bar where there is room for them.
 /// @param scalars  scalars_of(field, look.channel).
-/// Cost: a walk through the cells for each pixel in space: 960 x 540 over 64^3, 60 ms on two cores.
+/// Cost: a walk through the cells for each pixel in space: 960 x 540 over 64^3 takes 0.04 s of one core.
 Image volume_picture(const VolumeField& field, const VolumeScalars& scalars, const VolumeLook& look, glm::ivec2 size);
 
 /// What part of such a picture is where. @returns none beside the parts.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 
+#include "apps/demo/volume_viewer.h"
 #include "core/error.h"
 #include "core/log.h"
 #include "core/sky.h"
@@ -14,7 +15,11 @@ namespace volgi::demo {
 Document::Document(std::vector<std::filesystem::path> files, const app::LightOptions& light, double time_s,
                    SceneReading reading)
     : files_(std::move(files)), reading_(std::move(reading)), light_(light), time_s_(time_s) {
-  for (const std::filesystem::path& file : files_) sources_.push_back(std::make_unique<SceneSource>(file, reading_));
+  for (const std::filesystem::path& file : files_) {
+    if (is_volume_file(file))
+      throw Error(ExitCode::bad_input, file.string() + ": a volume, not a scene: volgi-demo with its name looks at it");
+    sources_.push_back(std::make_unique<SceneSource>(file, reading_));
+  }
   if (animated()) {
     for (const auto& source : sources_) box_.add(source->whole_bounds());
     for (const auto& source : sources_) parts_.push_back(source->at(time_s, box_));

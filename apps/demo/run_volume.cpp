@@ -20,12 +20,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-bool has_volume_name(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".vdb";
-}
-
 void start(VolumeViewer& viewer, const DemoOptions& options) {
   viewer.picture_folder = options.pictures;
   if (!options.view.empty()) viewer.set_view(options.view);
@@ -211,7 +205,7 @@ class VolumeWindow {
 
 bool is_volume(const DemoOptions& options) {
   size_t volumes = 0;
-  for (const std::filesystem::path& file : options.scenes) volumes += has_volume_name(file) ? 1 : 0;
+  for (const std::filesystem::path& file : options.scenes) volumes += is_volume_file(file) ? 1 : 0;
   if (volumes > 0 && options.scenes.size() > 1)
     throw Error(ExitCode::usage, "a volume (.vdb) is looked at alone; give it without other files");
   return volumes == 1;

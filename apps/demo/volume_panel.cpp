@@ -67,7 +67,7 @@ void draw_histogram(const VolumeViewer& v) {
   std::vector<float> counts = v.histogram(BINS);
   for (float& count : counts) count = std::log1p(count);
   ImGui::PlotHistogram("##histogram", counts.data(), BINS, 0, "cells by value (logarithm)", 0.0f,
-                       std::max(*std::max_element(counts.begin(), counts.end()), 1e-6f), {-1.0f, 90.0f});
+                       std::max(*std::max_element(counts.begin(), counts.end()), 1e-6f), {0.0f, 90.0f});
   const VolumeScalars& s = v.scalars();
   ImGui::TextWrapped(
       "%s", fmt::format("{} cells, {:.4g} to {:.4g}, mean {:.4g} {}", s.count, s.low, s.high, s.mean, v.field().unit)

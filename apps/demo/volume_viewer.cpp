@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -31,6 +32,12 @@ std::vector<VolumePart> parts_of(const std::string& view) {
 }
 
 }  // namespace
+
+bool is_volume_file(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".vdb";
+}
 
 VolumeViewer::VolumeViewer(std::filesystem::path file) : file_(std::move(file)) {
   const VdbFile vdb = read_vdb(file_);

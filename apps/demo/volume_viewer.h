@@ -13,6 +13,9 @@
 
 namespace volgi::demo {
 
+/// By its name: .vdb, in any case.
+bool is_volume_file(const std::filesystem::path& file);
+
 /// A volume that is open, and how it is looked at.
 class VolumeViewer {
  public:

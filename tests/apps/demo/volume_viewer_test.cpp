@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "apps/demo/document.h"
 #include "core/error.h"
 
 namespace volgi::demo {
@@ -124,6 +125,16 @@ TEST_F(VolumeViewerTest, AFileWithoutNumbersIsRefused) {
   label_grid(*empty, {"nothing", "1", ""});
   write_vdb(file_, openvdb::GridCPtrVec{empty}, {});
   EXPECT_THROW(VolumeViewer{file_}, Error);
+}
+
+// Dropped on the window of a scene.
+TEST_F(VolumeViewerTest, AsASceneAVolumeIsRefusedWithAHint) {
+  try {
+    const Document document({file_}, {});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("a volume, not a scene"), std::string::npos) << error.what();
+  }
 }
 
 // Every key has a command that is taken, and no key two.

@@ -2,10 +2,19 @@
 #include "screen/library/volume_light.h"
 
 #include <gtest/gtest.h>
+#include <time.h>
+
+#include <algorithm>
+#include <memory>
 
 #include "core/gl/objects.h"
+#include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "core/gl/scene_buffers.h"
 #include "reference/path_tracer.h"
+#include "screen/base/gbuffer.h"
+#include "screen/base/reflective_shadow_map.h"
+#include "screen/bounces/volume/frame_volume.h"
 #include "tests/screen/screen_scene.h"
 #include "tests/support/gl_test.h"
 
@@ -123,6 +132,72 @@ TEST_F(VolumeLightTest, LightsAForeignShadersFloor) {
   scene.lights[0].intensity *= 3.0f;
   light.update();
   EXPECT_NEAR(floor.mean(light).x / got.x, 3.0, 1e-2);
+}
+
+/// The passes of VolumeLight::update, called one by one as a program would that has no VolumeLight.
+class ByHand {
+ public:
+  ByHand(const Scene& scene, const VolumeOptions& options)
+      : scene_(scene),
+        buffers_(scene),
+        gbuffer_(glm::ivec2(1)),
+        camera_(framing_camera(scene.bounds_min, scene.bounds_max)),
+        volume_(screen::make_volume_on_gpu(scene, options, glm::ivec2(1))),
+        timer_(gl::current_is_software(), false) {}
+
+  void update() {
+    buffers_.set_geometry(scene_);
+    volume_->follow_scene();
+    maps_.run(buffers_, scene_, timer_);
+    gbuffer_.run(buffers_, camera_, timer_);
+    volume_->run(buffers_, maps_, gbuffer_, camera_, nullptr, timer_);
+    volume_->radiance(timer_);
+  }
+
+ private:
+  const Scene& scene_;
+  gl::SceneBuffers buffers_;
+  screen::ReflectiveShadowMap maps_;
+  screen::GBuffer gbuffer_;
+  Camera camera_;
+  std::unique_ptr<screen::FrameVolume> volume_;
+  gl::PassTimer timer_;
+};
+
+/// Of all threads of this process, the software rasterizer's among them [ms]: others on the machine do not count.
+template <class Update>
+double cpu_ms(const Update& update) {
+  const auto now = [] {
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return 1e3 * double(time.tv_sec) + 1e-6 * double(time.tv_nsec);
+  };
+  glFinish();
+  const double before = now();
+  update();
+  glFinish();
+  return now() - before;
+}
+
+// The least of many, in turn: a neighbour on the same core only adds. What the interface itself does is a check for
+// errors.
+TEST_F(VolumeLightTest, CostsWhatItsPassesCost) {
+  constexpr double LIMIT = 1.02;
+  constexpr int FEWEST = 5, MOST = 40;
+  const Scene scene = lamp_in_a_box(10.0f);
+  VolumeOptions options;
+  options.grid_cells = 16;
+  screen::VolumeLight light(scene, options);
+  ByHand by_hand(scene, options);
+  light.update();  // shaders are compiled
+  by_hand.update();
+  double with = 1e9, without = 1e9;
+  for (int k = 0; k < MOST && (k < FEWEST || with > LIMIT * without); ++k) {
+    with = std::min(with, cpu_ms([&] { light.update(); }));
+    without = std::min(without, cpu_ms([&] { by_hand.update(); }));
+  }
+  RecordProperty("ratio", std::to_string(with / without));
+  EXPECT_LT(with, LIMIT * without) << with << " ms, and " << without << " ms by hand";
 }
 
 }  // namespace
