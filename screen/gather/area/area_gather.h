@@ -20,7 +20,7 @@ struct AreaGatherOptions {
   float tolerance = 0.05f;  // of irradiance, between neighbours, above which what lies between them is gathered
   float in_part = 0.5f;     // share of the lights whose visibility may differ there
   bool incremental = true;  // lights that all neighbours see, or none does, are not asked again
-  int interleave = 4;       // levels of so many pixels or fewer between neighbours share lights out; 0: none
+  int interleave = 4;       // levels of so many pixels or fewer between neighbours share ways out; 0: none
 };
 
 /// Passes "screen/gather/area/gather_N", N the pixels between neighbours of a level, and "screen/gather/area/shade":
@@ -28,13 +28,13 @@ struct AreaGatherOptions {
 /// gathered where its surface has an edge, or where light or visibility vary between those of the level before; the
 /// others are interpolated. Lights that follow on one another are one of 64 groups. Each pixel keeps two bits for every
 /// group, whether some and whether all of its lights are seen, so that a finer one asks only for groups on which its
-/// neighbours disagree. On fine levels a pixel takes a quarter of each group's lights, as the pixels around it take the
-/// other ones, and then the mean of them.
-/// Source: Nichols 2010, §5.3.2 to §5.3.4; we depart: pixels instead of patches, as in screen/base/smooth_pixels.h, so
-/// that nothing is upsampled; a level's own variation is what its neighbours show, so masks need no stencil buffer;
-/// bits are of groups, so that more than 256 lights take no more of them; and coarse levels, whose pixels are few and
-/// far apart, do not share. Deterministic. Cost: a form factor for each light at each gathered pixel, or for a quarter
-/// of them, a way for those that are asked; 65 bytes a pixel.
+/// neighbours disagree. On fine levels a pixel asks for a quarter of the lights, each of which counts for the four
+/// around it, as pixels around it ask for the other ones; on the finest it then takes the mean of them. Source: Nichols
+/// 2010, §5.3.2 to §5.3.4; we depart: pixels instead of patches, as in screen/base/smooth_pixels.h, so that nothing is
+/// upsampled; a level's own variation is what its neighbours show, so masks need no stencil buffer; bits are of groups,
+/// so that more than 256 lights take no more of them; and pixels share visibility out, not light, on levels of
+/// `interleave` and finer, as coarse ones are few and far apart. Deterministic. Cost: a form factor for each light at
+/// each gathered pixel, a way for those that are asked; 65 bytes a pixel.
 class AreaGather {
  public:
   static constexpr const char* name = "screen/gather/area/gather";

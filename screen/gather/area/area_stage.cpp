@@ -28,7 +28,7 @@ constexpr Parameter PARAMETERS[] = {
         {"area.incremental", "", "lights that all neighbours see, or none does, are not asked again"},
         [](Options& o) -> auto& { return o.incremental; }),
     number<Options>(
-        {"area.interleave", "pixels", "levels of so many between neighbours, or fewer, share lights out to 2 x 2"},
+        {"area.interleave", "pixels", "levels of so many between neighbours, or fewer, share ways out to 2 x 2"},
         {0, 32}, [](Options& o) -> auto& { return o.interleave; }),
     yes_no<AreaLobeOptions>(
         {"area.variance", "", "shadows in narrow lobes by the variance of how far samples see, not by each alone"},

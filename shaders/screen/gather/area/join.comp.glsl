@@ -1,7 +1,6 @@
 #version 450 core
-// Irradiance of all lights at the pixels of a list, of which each has a share of every group: the mean over the pixels
-// around it that show its surface, by weights 1 2 1 along both axes, in which each share has the same part. Pixels that
-// were not gathered have all lights.
+// Irradiance at the pixels of a list, of which each has asked for a share of every group: the mean over the pixels
+// around it that show its surface, by weights 1 2 1 along both axes, in which each share has the same part.
 #include "screen/base/coarse_pixels.glsl"
 #include "screen/gather/area/area_level.glsl"
 #include "shared/group_sizes.shared.h"
