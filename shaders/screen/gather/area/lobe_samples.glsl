@@ -1,4 +1,5 @@
-// Directions through a pixel's lobe and what they meet of emissive surfaces: Nichols 2010, sections 5.3.2.1 and 5.3.3.3.
+// Directions through a pixel's lobe and what they meet of emissive surfaces: Nichols 2010, sections 5.3.2.1 and
+// 5.3.3.3.
 // Set by the program: PHONG, where mirrors are Phong lobes
 #ifndef VOLGI_LOBE_SAMPLES_GLSL
 #define VOLGI_LOBE_SAMPLES_GLSL

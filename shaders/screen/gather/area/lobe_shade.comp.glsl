@@ -1,6 +1,6 @@
 #version 450 core
-// What lobes reflect of light straight from emissive surfaces: by lights, as far as their groups are seen; or by samples
-// of their pictures, as light as the block of 2 x 2 pixels has found them seen.
+// What lobes reflect of light straight from emissive surfaces: by lights, as far as their groups are seen; or by
+// samples of their pictures, as light as the block of 2 x 2 pixels has found them seen.
 // Set by the program: PHONG, where mirrors are Phong lobes
 #include "screen/gather/area/lobe_samples.glsl"
 #include "shared/disk_to_point.shared.h"

@@ -1,7 +1,7 @@
 #version 450 core
-// How a pixel's lobe is to be summed, by lights or by samples of pictures where fewer than nine lights lie in it, and how
-// far a quarter of these samples see, as a share of their way: its mean and the mean of its square are what shadows
-// are made of (Donnelly and Lauritzen 2006).
+// How a pixel's lobe is to be summed, by lights or by samples of pictures where fewer than nine lights lie in it, and
+// how far a quarter of these samples see, as a share of their way: its mean and the mean of its square are what
+// shadows are made of (Donnelly and Lauritzen 2006).
 // Set by the program: VOXELS or FACES, what hides lights; PHONG, where mirrors are Phong lobes
 #include "screen/gather/area/lobe_samples.glsl"
 #include "shared/group_sizes.shared.h"

@@ -17,8 +17,8 @@ vec4 voxel_place(vec4 world) {
   return vec4((clip.xy + clip.w) * (0.5 * size), clip.w, dot(voxel_slice_from_world, world));
 }
 
-// An end of a way: on a surface, off it by the bias along its normal, and how much of the way is left out there [m]. In a
-// corner the other wall's voxels are as near as the own, so it is both.
+// An end of a way: on a surface, off it by the bias along its normal, and how much of the way is left out there [m].
+// In a corner the other wall's voxels are as near as the own, so it is both.
 struct VoxelEnd {
   vec3 world;
   vec4 place, off;
@@ -77,8 +77,8 @@ bool voxel_way(VoxelEnd from, VoxelEnd to, out VoxelWay way) {
   return true;
 }
 
-// The first sample from `first` on that meets a voxel, or way.steps. Of VOXEL_RUN samples that lie in as many texels one
-// look says whether any can.
+// The first sample from `first` on that meets a voxel, or way.steps. Of VOXEL_RUN samples that lie in as many texels
+// one look says whether any can.
 int first_voxel(VoxelWay way, int first) {
   ivec2 size = textureSize(voxel_bits, 0).xy;
   vec4 by = (way.to - way.from) / float(way.steps);
