@@ -323,6 +323,31 @@ std::vector<EmitterPoint> EmitterPoints::grid_points(int count) const {
   return points;
 }
 
+std::vector<EmitterPanel> EmitterPoints::panels(int texels, size_t most) const {
+  std::vector<EmitterPanel> list;
+  std::vector<bool> done(sides_.size(), false);
+  constexpr double OF_RADIANCE = 1.0 / glm::pi<double>();  // area whose flux is its radiance [m^2]
+  for (size_t k = 0; k < sides_.size(); ++k) {
+    if (done[k]) continue;
+    const std::optional<Parallelogram> whole = parallelogram_of(k);
+    if (!whole || list.size() == most) return {};
+    done[whole->other] = true;
+    const EmitterPoint corner = point_of(k, *whole, {0.0, 0.0}, OF_RADIANCE);
+    EmitterPanel panel{corner.position,
+                       point_of(k, *whole, {1.0, 0.0}, OF_RADIANCE).position - corner.position,
+                       point_of(k, *whole, {0.0, 1.0}, OF_RADIANCE).position - corner.position,
+                       corner.normal,
+                       {}};
+    panel.radiance.reserve(size_t(texels) * size_t(texels));
+    for (int j = 0; j < texels; ++j) {
+      for (int i = 0; i < texels; ++i)
+        panel.radiance.push_back(point_of(k, *whole, (glm::dvec2(i, j) + 0.5) / double(texels), OF_RADIANCE).flux);
+    }
+    list.push_back(std::move(panel));
+  }
+  return list;
+}
+
 std::vector<EmitterPoint> EmitterPoints::points(int count, int sample) const {
   std::vector<EmitterPoint> points;
   if (empty()) return points;

@@ -16,6 +16,13 @@ struct EmitterPoint {
   float area_m2;       // of the surface that the point stands for; each side of a double-sided triangle counts
 };
 
+/// One side of an emissive parallelogram, and the picture on it.
+struct EmitterPanel {
+  glm::vec3 corner, along_u, along_v;  // centred frame; edges from the corner [m]
+  glm::vec3 normal;                    // unit, on the side that the light leaves
+  std::vector<glm::vec3> radiance;     // of texels^2 cells, rows along u [W m^-2 sr^-1]
+};
+
 /// Points on a scene's emissive triangles, as many to each, and to each part of a textured one, as its power asks for;
 /// or as its area does, on a grid.
 class EmitterPoints {
@@ -39,6 +46,9 @@ class EmitterPoints {
   /// @param count  of all meshes together, at most, but for one on each triangle: every triangle or parallelogram has a
   /// square number of its own.
   std::vector<EmitterPoint> grid_points(int count) const;
+  /// All emissive surfaces as pictures, `texels` on each edge; none where one is no parallelogram, or they are more
+  /// than `most`. Cost: a look at each cell's middle.
+  std::vector<EmitterPanel> panels(int texels, size_t most) const;
 
  private:
   /// A part of a textured side: one of lattice^2 equal triangles.

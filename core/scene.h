@@ -63,6 +63,7 @@ struct Material {
   glm::vec3 specular_color_factor{1.0f};
   float ior = 1.5f;                   // index of refraction; 0: the mirror of an infinite one
   bool lambertian = false;            // nothing shines, not even metal (--materials lambert)
+  bool phong = false;                 // mirrors are Phong lobes of that roughness (--materials phong)
   glm::vec3 emissive_radiance{0.0f};  // emissiveFactor · emissiveStrength [W m^-2 sr^-1]
   TextureUse emissive;                // sRGB
   AlphaMode alpha_mode = AlphaMode::opaque;

@@ -127,6 +127,7 @@ SurfacePoint surface_point(const Scene& scene, const Mesh& mesh, std::uint32_t t
   point.reflectance_0 = reflectance.at_0;
   point.reflectance_90 = reflectance.at_90;
   point.roughness = std::clamp(material.roughness_factor * texel.y, 0.0f, 1.0f);
+  point.phong = material.phong;
   point.albedo = shared::surface_albedo(reflectance, point.roughness);
   if (material.is_emissive()) {
     point.emission = material.emissive_radiance * glm::vec3(sample_use(scene, mesh, material.emissive, at, true));
@@ -138,6 +139,10 @@ bool shines(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) {
     return !m.lambertian && !m.unlit && (m.specular_factor > 0.0f || m.metallic_factor > 0.0f);
   });
+}
+
+bool has_phong_lobes(const Scene& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.phong; });
 }
 
 float largest_albedo(const Scene& scene) {

@@ -18,6 +18,7 @@ struct SurfacePoint {
   glm::vec3 reflectance_0;
   float reflectance_90;
   float roughness;     // perceptual: its square is GGX's alpha
+  bool phong;          // a Phong lobe of shared::phong_exponent() in place of GGX
   float alpha;         // 1 when opaque; 0 or 1 for MASK; coverage for BLEND; of glass, what it stops
   glm::vec3 tint;      // what light that the surface does not stop is coloured by: 1, but for glass
   glm::vec3 unlit;     // radiance that the camera alone sees
@@ -36,6 +37,9 @@ glm::vec4 sample_texture(const Scene& scene, int texture, glm::vec2 uv, bool srg
 
 /// Whether some material of the scene is not Lambertian.
 bool shines(const Scene& scene);
+
+/// Whether what shines does so by Phong lobes (--materials phong).
+bool has_phong_lobes(const Scene& scene);
 
 /// Largest albedo component that any point of the scene can have (factors, vertex colours and texture maxima).
 float largest_albedo(const Scene& scene);

@@ -59,18 +59,28 @@ glm::vec3 visible_normal(glm::vec3 viewer, float alpha, glm::vec2 xi) {
   return glm::normalize(glm::vec3(alpha * h.x, alpha * h.y, std::max(h.z, 1e-6f)));
 }
 
+/// (R.l)^n, R the viewer's mirror direction.
+float to_power(glm::vec3 normal, glm::vec3 to_viewer, glm::vec3 to_light, float n) {
+  return std::pow(glm::clamp(glm::dot(glm::reflect(-to_viewer, normal), to_light), 0.0f, 1.0f), n);
+}
+
 }  // namespace
 
 Scattering::Scattering(const SurfacePoint& s)
     : diffuse_(s.diffuse),
       f0_(s.reflectance_0),
       f90_(s.reflectance_90),
-      alpha_(std::max(s.roughness * s.roughness, kLeastAlpha)) {}
+      alpha_(std::max(s.roughness * s.roughness, kLeastAlpha)),
+      exponent_(s.phong ? shared::phong_exponent(s.roughness) : -1.0f) {}
 
 glm::vec3 Scattering::reflected(glm::vec3 normal, glm::vec3 to_viewer, glm::vec3 to_light) const {
   const float cos_light = glm::dot(normal, to_light);
   if (cos_light <= 0.0f) return glm::vec3(0.0f);
   if (!shines()) return diffuse_ * (cos_light / kPi);
+  if (exponent_ >= 0.0f) {
+    const glm::vec3 lobe = f0_ * ((exponent_ + 2.0f) / (2.0f * kPi) * to_power(normal, to_viewer, to_light, exponent_));
+    return (diffuse_ * ((1.0f - largest(f0_)) / kPi) + lobe) * cos_light;
+  }
   const float cos_viewer = std::max(glm::dot(normal, to_viewer), kLeastCosine);
   const glm::vec3 half = glm::normalize(to_viewer + to_light);
   const float cos_half = glm::clamp(glm::dot(normal, half), 0.0f, 1.0f);
@@ -84,7 +94,8 @@ glm::vec3 Scattering::reflected(glm::vec3 normal, glm::vec3 to_viewer, glm::vec3
 float Scattering::mirror_share(glm::vec3 normal, glm::vec3 to_viewer) const {
   if (!shines()) return 0.0f;
   if (diffuse_ == glm::vec3(0.0f)) return 1.0f;
-  const float grazing = std::pow(1.0f - glm::clamp(glm::dot(normal, to_viewer), 0.0f, 1.0f), 5.0f);
+  const float grazing =
+      exponent_ >= 0.0f ? 0.0f : std::pow(1.0f - glm::clamp(glm::dot(normal, to_viewer), 0.0f, 1.0f), 5.0f);
   const float mirror = largest(f0_) + (f90_ - largest(f0_)) * grazing;
   return std::clamp(mirror / (mirror + largest(diffuse_)), 0.1f, 0.9f);
 }
@@ -94,6 +105,10 @@ float Scattering::pdf(glm::vec3 normal, glm::vec3 to_viewer, glm::vec3 to_light)
   if (cos_light <= 0.0f) return 0.0f;
   const float mirror = mirror_share(normal, to_viewer);
   float density = (1.0f - mirror) * cos_light / kPi;
+  if (mirror > 0.0f && exponent_ >= 0.0f) {
+    const float lobe = to_power(normal, to_viewer, to_light, exponent_);
+    return density + mirror * (exponent_ + 1.0f) / (2.0f * kPi) * lobe;
+  }
   if (mirror > 0.0f) {
     const float cos_viewer = std::max(glm::dot(normal, to_viewer), kLeastCosine);
     const float cos_half = glm::clamp(glm::dot(normal, glm::normalize(to_viewer + to_light)), 0.0f, 1.0f);
@@ -108,6 +123,12 @@ glm::vec3 Scattering::sample(glm::vec3 normal, glm::vec3 to_viewer, glm::vec2 xi
     const glm::vec2 disk = on_disk(xi);
     const float z = std::sqrt(std::max(0.0f, 1.0f - glm::dot(disk, disk)));
     return glm::normalize(frame * glm::vec3(disk, z));
+  }
+  if (exponent_ >= 0.0f) {
+    const float z = std::pow(xi.x, 1.0f / (exponent_ + 1.0f)), turn = 2.0f * kPi * xi.y;
+    const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+    return glm::normalize(around(glm::reflect(-to_viewer, normal)) *
+                          glm::vec3(r * std::cos(turn), r * std::sin(turn), z));
   }
   glm::vec3 viewer = glm::transpose(frame) * to_viewer;
   viewer.z = std::max(viewer.z, kLeastCosine);

@@ -6,7 +6,9 @@
 namespace volgi {
 
 /// How a surface point reflects: glTF 2.0, appendix B. A Lambertian part weighed by what Fresnel leaves it, and GGX
-/// with height-correlated Smith masking and Schlick's Fresnel. Single scattering, as there. Written apart from the
+/// with height-correlated Smith masking and Schlick's Fresnel. Single scattering, as there. Or, where the
+/// surface says so, a Phong lobe that keeps power, f0 (n + 2) / 2 pi (R.l)^n (Lafortune and Willems 1994), without
+/// Fresnel. Written apart from the
 /// renderers' (shaders/screen/base/brdf.glsl), so that one finds the other's mistakes.
 /// Directions are unit and point away from the surface; `normal` is the shading normal on the viewer's side.
 class Scattering {
@@ -27,6 +29,7 @@ class Scattering {
 
   glm::vec3 diffuse_, f0_;
   float f90_, alpha_;
+  float exponent_;  // of a Phong lobe; < 0: GGX
 };
 
 }  // namespace volgi

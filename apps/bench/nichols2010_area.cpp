@@ -77,13 +77,14 @@ class Bench {
                           {"error_percent", m.rmse_pct_denoised.value_or(m.rmse_pct)},
                           {"energy", m.ratio},
                           {"frame_ms", picture.frame_ms()},
-                          {"gather_ms", picture.passes_ms({screen::AreaGather::name})},
                           {"gathered_percent", 100.0 * report.number("gathered_share")},
                           {"ways", report.number("ways_asked")}};
     for (const screen::FrameReport::Figure& f : report.figures()) {
       const auto* levels = std::get_if<std::vector<double>>(&f.value);
       if (f.name == "gathered_of_level" && levels != nullptr) row["gathered_of_level"] = *levels;
     }
+    for (int step = Area().coarsest; step > 0; step /= 2)
+      row["level_ms"].push_back(picture.passes_ms({screen::AreaGather::level_name(step)}));
     show_(fmt::format("  {:<48} {:6.2f} %  energy {:6.4f}  {:5.1f} % gathered {:9.0f} ways {:7.0f} ms\n", what,
                       row["error_percent"].get<double>(), m.ratio, row["gathered_percent"].get<double>(),
                       row["ways"].get<double>(), row["frame_ms"].get<double>()));
@@ -116,8 +117,9 @@ class Bench {
       FrameOptions o = area(options_.size, Ways::voxels);
       o.of<Area>().tolerance = tolerance;
       nlohmann::json row = measured(fmt::format("tolerance {:g}", tolerance), o, cycles_);
-      show_(fmt::format("    of its level, 16 ... 1 pixels: {:.2f}\n",
-                        fmt::join(row["gathered_of_level"].get<std::vector<double>>(), " ")));
+      show_(fmt::format("    of its level, 16 ... 1 pixels: {:.2f}; {:.1f} ms\n",
+                        fmt::join(row["gathered_of_level"].get<std::vector<double>>(), " "),
+                        fmt::join(row["level_ms"].get<std::vector<double>>(), " ")));
       rows.push_back(std::move(row));
     }
     return rows;
@@ -142,7 +144,10 @@ class Bench {
       FrameOptions o = area(options_.size, Ways::voxels);
       o.of<Voxels>().texels = texels;
       o.of<Voxels>().bits = bits;
-      if (every) o.of<Area>().coarsest = 1;
+      if (every) {
+        o.of<Area>().coarsest = 1;
+        o.of<Area>().interleave = 0;
+      }
       rows.push_back(measured(what, o, rays));
     };
     for (const int texels : {32, 64, 128, 256, 512, 1024})
@@ -157,6 +162,7 @@ class Bench {
     FrameOptions all = area(options_.size, Ways::voxels), every = all;
     all.of<Area>().incremental = false;
     every.of<Area>().coarsest = 1;
+    every.of<Area>().interleave = 0;
     RepeatedFrame few(scene_, context_, area(options_.size, Ways::voxels)), asked(scene_, context_, all),
         pixels(scene_, context_, every);
     for (RepeatedFrame* f : {&few, &asked, &pixels}) f->render_repeatedly(1);
@@ -172,7 +178,7 @@ class Bench {
     show_("Lights on the screen, blocked faces, against Cycles:\n");
     nlohmann::json rows;
     for (const auto sampling : {Lights::Sampling::grid, Lights::Sampling::importance}) {
-      for (const int n : {4, 8, 16}) {
+      for (const int n : {4, 8, 16, 32, 64, 128}) {
         FrameOptions o = faces();
         o.of<Lights>() = {n * n, sampling};
         rows.push_back(

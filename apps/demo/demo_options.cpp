@@ -32,6 +32,7 @@ void DemoOptions::add_to(CLI::App& app) {
       ->type_name("COMMAND");
   frame.add_to(app);
   light.add_to(app);
+  light.video.add_to(app);
   reading.add_to(app);
   device.add_to(app);
   app.add_option("--settings", settings_file, "file of settings ($XDG_CONFIG_HOME/volgi/demo.json)");

@@ -20,7 +20,7 @@ Document::Document(std::vector<std::filesystem::path> files, const app::LightOpt
       throw Error(ExitCode::bad_input, file.string() + ": a volume, not a scene: volgi-demo with its name looks at it");
     sources_.push_back(std::make_unique<SceneSource>(file, reading_));
   }
-  if (animated()) {
+  if (moves()) {
     for (const auto& source : sources_) box_.add(source->whole_bounds());
     for (const auto& source : sources_) parts_.push_back(source->at(time_s, box_));
   } else {
@@ -38,6 +38,8 @@ Document::Document(std::vector<std::filesystem::path> files, const app::LightOpt
   }
   if (parts_.size() == 1) parts_.clear();
   lights_of_files_ = scene_.lights;
+  film_s_ = light_.video.duration_s();
+  light_.video.show(scene_, time_s);
   light_up();
 }
 
@@ -47,18 +49,25 @@ std::string Document::title() const {
   return names;
 }
 
-bool Document::animated() const {
+bool Document::animated() const { return moves() || light_.video.plays(); }
+
+bool Document::moves() const {
   return std::any_of(sources_.begin(), sources_.end(), [](const auto& source) { return source->animated(); });
 }
 
 double Document::duration_s() const {
-  double longest = 0.0;
+  double longest = film_s_;
   for (const auto& source : sources_) longest = std::max(longest, source->animated() ? source->duration_s() : 0.0);
   return longest;
 }
 
-void Document::move(double time_s) {
-  if (!animated()) return;
+bool Document::move(double time_s) {
+  if (moves()) move_sources(time_s);
+  if (animated()) time_s_ = time_s;
+  return light_.video.show(scene_, time_s);
+}
+
+void Document::move_sources(double time_s) {
   scene_.lights = lights_of_files_;  // what moves them knows no others, and leaves those that stand still
   if (parts_.empty()) {
     sources_.front()->move(scene_, time_s, box_);
@@ -70,8 +79,8 @@ void Document::move(double time_s) {
     scene_ = parts_.front();
     for (size_t k = 1; k < parts_.size(); ++k) append_scene(scene_, parts_[k]);
     scene_.materials = materials;
+    light_.video.forget_shown();  // images are the files' again
   }
-  time_s_ = time_s;
   lights_of_files_ = scene_.lights;
   light_up();
 }

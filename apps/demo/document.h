@@ -30,11 +30,15 @@ class Document {
   std::string title() const;  // the files' names
   const Scene& scene() const { return scene_; }
 
+  bool moves() const;  // some geometry, camera or light does
+  /// It moves, or a film plays.
   bool animated() const;
-  double duration_s() const;  // of the longest animation; 0 without any
+  double duration_s() const;  // of the longest animation, or of the film where that is longer; 0 without any
   double time_s() const { return time_s_; }
-  /// Geometry, cameras and lights of another time; what was changed stays changed. @throws Error as SceneSource::move.
-  void move(double time_s);
+  /// Geometry, cameras, lights and the film's picture of another time; what was changed stays changed.
+  /// @returns whether an image is another than before: triangles and frames are to be made anew.
+  /// @throws Error as SceneSource::move and AreaVideo::show.
+  bool move(double time_s);
 
   /// The file's; or one in a closed place; or one that sees everything.
   const std::vector<Camera>& cameras() const { return scene_.cameras; }
@@ -68,6 +72,7 @@ class Document {
   const SceneReading& reading() const { return reading_; }
 
  private:
+  void move_sources(double time_s);
   void light_up();
   void add_default_light();
   bool shines() const;
@@ -79,7 +84,7 @@ class Document {
   app::LightOptions light_;
   Scene scene_;
   WorldBox box_;
-  double time_s_ = 0.0;
+  double time_s_ = 0.0, film_s_ = 0.0;
   Camera made_camera_;
   int grid_cells_ = 32;
   bool default_light_ = false;

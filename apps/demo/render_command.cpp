@@ -95,8 +95,10 @@ std::string render_command(const Session& session, const std::filesystem::path& 
   add_words(session.camera_arguments(), all);  // numbers and options: nothing to quote
   if (document.animated()) {
     all.insert(all.end(), {"--time", fmt::format("{}", document.time_s())});
-    all.push_back("--whole-animation");
+    if (document.moves()) all.push_back("--whole-animation");
   }
+  const Arguments film = document.light_options().video.arguments();
+  all.insert(all.end(), film.begin(), film.end());
   add_light(document, light_file, all);
   const Arguments frame = frame_arguments(settings.frame, settings.grid_fits_scene);
   all.insert(all.end(), frame.begin(), frame.end());

@@ -198,7 +198,10 @@ void Session::light_changed(bool kinds) {
 
 void Session::set_time(double time_s) {
   if (!has_scene() || !document_->animated()) return;
-  document_->move(std::max(time_s, 0.0));
+  if (document_->move(std::max(time_s, 0.0))) {
+    triangles_.reset();
+    for (Canvas* c : {&full_, &quick_}) c->wanted = c->other_images = true;
+  }
   if (file_camera_) camera_ = document_->cameras()[std::min(*file_camera_, document_->cameras().size() - 1)];
   full_.moved = quick_.moved = true;
   scene_has_changed();
@@ -307,7 +310,7 @@ std::optional<Session::Canvas> Session::make_frame(glm::ivec2 size) {
   std::unique_ptr<screen::Frame> made;
   std::unique_ptr<Picture> picture;
   // The quick one's programs go to the next; should that fail, there is the full one.
-  if (quick_shown_) c.frame.reset();
+  if (std::exchange(c.other_images, false) || quick_shown_) c.frame.reset();
   if (triangles_) triangles_->set_materials(document_->scene().materials);
   try {
     screen::FrameOptions options = frame_options(size);
@@ -321,7 +324,7 @@ std::optional<Session::Canvas> Session::make_frame(glm::ivec2 size) {
     return std::nullopt;
   }
   std::optional<Canvas> before;
-  if (other_shaders && c.frame) before = Canvas{std::move(c.frame), nullptr, c.size, false, c.moved, false};
+  if (other_shaders && c.frame) before = Canvas{std::move(c.frame), nullptr, c.size, false, c.moved, false, false};
   c.frame = std::move(made);
   triangles_ = c.frame->triangles();
   if (picture) {

@@ -134,6 +134,7 @@ class Session {
     bool wanted = true;           // the frame, anew
     bool picture_wanted = false;  // likewise
     bool moved = false;           // the scene, since the frame last followed
+    bool other_images = false;    // than the frame was made for
   };
   const Canvas& canvas() const { return quick_shown_ ? quick_ : full_; }
   Canvas& canvas() { return quick_shown_ ? quick_ : full_; }

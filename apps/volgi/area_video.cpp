@@ -1,6 +1,7 @@
 #include "apps/volgi/area_video.h"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,17 @@ std::vector<std::filesystem::path> AreaVideo::list_files() const {
   }
   if (list.empty()) throw Error(ExitCode::usage, fmt::format("--area-video {}: there is no such PNG", files_));
   return list;
+}
+
+double AreaVideo::duration_s() {
+  if (!plays()) return 0.0;
+  if (list_.empty()) list_ = list_files();
+  return double(list_.size()) / frames_per_s_;
+}
+
+std::vector<std::string> AreaVideo::arguments() const {
+  if (!plays()) return {};
+  return {"--area-video", files_, "--area-fps", fmt::format("{}", frames_per_s_)};
 }
 
 bool AreaVideo::show(Scene& scene, double time_s) {

@@ -1,10 +1,13 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/scene.h"
+
+namespace CLI {
+class App;
+}
 
 namespace volgi::app {
 
@@ -17,6 +20,13 @@ class AreaVideo {
   /// @throws Error(usage) when no emissive surface has a texture, or there is no such file; Error(bad_input) naming a
   /// file that is no PNG.
   bool show(Scene& scene, double time_s);
+  /// The next show() is of a scene whose images are its own.
+  void forget_shown() { shown_ = SIZE_MAX; }
+  bool plays() const { return !files_.empty(); }
+  /// Of all pictures; 0 where there is no --area-video. @throws Error(usage) as show().
+  double duration_s();
+  /// As a command line has them; none where there is no --area-video.
+  std::vector<std::string> arguments() const;
 
  private:
   std::vector<std::filesystem::path> list_files() const;

@@ -101,10 +101,25 @@ void LightOptions::add_to(CLI::App& command) {
       ->check(CLI::Range(0.0, 1e12))
       ->capture_default_str();
   command
-      .add_option("--materials", materials,
-                  "gltf: surfaces shine as glTF's do; lambert: only their diffuse part, as the papers have it")
-      ->check(CLI::IsMember({"gltf", "lambert"}))
+      .add_option(
+          "--materials", materials,
+          "gltf: surfaces shine as glTF's do; lambert: only their diffuse part, as the papers have it; phong: by "
+          "Phong lobes about as wide as the file's roughness, or all of one exponent")
+      ->type_name("gltf|lambert|phong[:N]")
+      ->check([](const std::string& text) {
+        return text == "gltf" || text == "lambert" || phong_of(text)
+                   ? std::string()
+                   : fmt::format("{}: give gltf, lambert, phong or phong:N, an exponent from 0 to 10000", text);
+      })
       ->capture_default_str();
+}
+
+std::optional<double> LightOptions::phong_of(const std::string& materials) {
+  if (materials == "phong") return -1.0;
+  if (!materials.starts_with("phong:")) return std::nullopt;
+  const auto numbers = parse_numbers(std::string_view(materials).substr(6));
+  if (numbers.size() != 1 || !(numbers[0] >= 0.0 && numbers[0] <= 1e4)) return std::nullopt;
+  return numbers[0];
 }
 
 void LightOptions::set_sky(const std::string& text, double rotate_deg) {
@@ -154,7 +169,13 @@ void LightOptions::apply(Scene& scene) const {
   for (const std::string& text : lamps) scene.lights.push_back(lamp_of(text, scene));
   for (const std::string& text : suns) scene.lights.push_back(sun_of(text));
   put_sky(scene);
-  for (Material& m : scene.materials) m.lambertian = materials == "lambert";
+  const std::optional<double> exponent = phong_of(materials);
+  for (Material& m : scene.materials) {
+    m.lambertian = materials == "lambert";
+    m.phong = exponent.has_value();
+    // shared::phong_exponent() the other way round.
+    if (exponent && *exponent >= 0.0) m.roughness_factor = float(std::pow(2.0 * *exponent + 1.0, -0.25));
+  }
   if (!lights.empty()) apply_light_file(read_light_file(lights, scene.world_origin), lights, scene);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/volgi/area_video.h"
 #include "core/scene.h"
 
 namespace CLI {
@@ -23,6 +25,7 @@ struct LightOptions {
   double sky_rotate_deg = 0.0;
   double lamp_scale = 1.0;
   std::string materials = "gltf";
+  AreaVideo video;               // whoever plays it adds its options and shows it
   std::filesystem::path lights;  // core/light_file.h; empty: those of the scene
 
   /// --sky and --sky-rotate in place of those that there are.
@@ -33,6 +36,9 @@ struct LightOptions {
   /// Once after every SceneSource::at() or move().
   /// @throws Error(usage) naming the text that says nothing, Error(bad_input) as read_sky().
   void apply(Scene& scene) const;
+
+  /// --materials phong:N: N, and -1 for phong alone; none for what is neither.
+  static std::optional<double> phong_of(const std::string& materials);
 
  private:
   void put_sky(Scene& scene) const;

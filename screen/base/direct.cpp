@@ -10,19 +10,20 @@ namespace volgi::screen {
 
 namespace {
 
-std::vector<std::string> defines(bool shines, bool glass) {
+std::vector<std::string> defines(bool shines, bool glass, bool phong) {
   std::vector<std::string> list;
   if (shines) list.emplace_back("SHINES");
   if (glass) list.emplace_back("GLASS");
+  if (phong) list.emplace_back("PHONG");
   return list;
 }
 
 }  // namespace
 
-Direct::Direct(glm::ivec2 size, bool shines, bool glass)
+Direct::Direct(glm::ivec2 size, bool shines, bool glass, bool phong)
     : radiance_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
-      program_(
-          gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl", defines(shines, glass))) {
+      program_(gl::Program::raster("shared/fullscreen.vert.glsl", "screen/base/direct.frag.glsl",
+                                   defines(shines, glass, phong))) {
   const std::array colors{gl::Framebuffer::Attachment{&radiance_}};
   framebuffer_ = gl::Framebuffer(colors, {}, size);
 }

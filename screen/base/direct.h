@@ -13,7 +13,8 @@ class Direct {
  public:
   static constexpr const char* name = "screen/base/direct";
   /// @param shines  as the G-buffer that it reads. @param glass  the scene has some.
-  explicit Direct(glm::ivec2 size, bool shines = false, bool glass = false);
+  /// @param phong  has_phong_lobes().
+  explicit Direct(glm::ivec2 size, bool shines = false, bool glass = false, bool phong = false);
   void run(const GBuffer& gbuffer, const Camera& camera, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
 
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "core/halton.h"
+#include "shaders/shared/material.shared.h"
 
 namespace volgi::screen {
 namespace {
@@ -40,18 +41,38 @@ glm::vec2 reflected(double cosine, double roughness) {
   return glm::vec2(sum / double(SAMPLES));
 }
 
+/// Of a lobe (n + 2) / 2 pi (R.l)^n.
+glm::vec2 reflected_by_phong(double cosine, double roughness) {
+  constexpr int EDGE = 64;
+  const double n = double(shared::phong_exponent(float(roughness))), sine = std::sqrt(1.0 - cosine * cosine);
+  double sum = 0.0;
+  for (int i = 0; i < EDGE; ++i) {
+    // By the lobe's own density, (n + 1) / 2 pi (R.l)^n.
+    const double along = std::pow((i + 0.5) / EDGE, 1.0 / (n + 1.0)), aside = std::sqrt(1.0 - along * along);
+    for (int k = 0; k < EDGE; ++k) {
+      const double turn = glm::two_pi<double>() * (k + 0.5) / EDGE;
+      sum += std::max(along * cosine + aside * std::cos(turn) * sine, 0.0);
+    }
+  }
+  return {float((n + 2.0) / (n + 1.0) * sum / (EDGE * EDGE)), 0.0f};
+}
+
+std::vector<glm::vec2> table_of(glm::vec2 (*reflected)(double cosine, double roughness)) {
+  std::vector<glm::vec2> values;
+  for (int row = 0; row < DIRECTIONAL_ALBEDO_SIZE; ++row) {
+    for (int column = 0; column < DIRECTIONAL_ALBEDO_SIZE; ++column)
+      values.push_back(reflected((column + 0.5) / DIRECTIONAL_ALBEDO_SIZE, (row + 0.5) / DIRECTIONAL_ALBEDO_SIZE));
+  }
+  return values;
+}
+
 }  // namespace
 
-const std::vector<glm::vec2>& directional_albedo() {
-  static const std::vector<glm::vec2> table = [] {
-    std::vector<glm::vec2> values;
-    for (int row = 0; row < DIRECTIONAL_ALBEDO_SIZE; ++row) {
-      for (int column = 0; column < DIRECTIONAL_ALBEDO_SIZE; ++column)
-        values.push_back(reflected((column + 0.5) / DIRECTIONAL_ALBEDO_SIZE, (row + 0.5) / DIRECTIONAL_ALBEDO_SIZE));
-    }
-    return values;
-  }();
-  return table;
+const std::vector<glm::vec2>& directional_albedo(bool phong) {
+  static const std::vector<glm::vec2> facets = table_of(reflected);
+  if (!phong) return facets;
+  static const std::vector<glm::vec2> lobes = table_of(reflected_by_phong);
+  return lobes;
 }
 
 }  // namespace volgi::screen

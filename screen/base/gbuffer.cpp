@@ -14,22 +14,26 @@
 namespace volgi::screen {
 namespace {
 
-std::vector<std::string> defines(bool shines) {
-  return shines ? std::vector<std::string>{"SHINES"} : std::vector<std::string>{};
+std::vector<std::string> defines(bool shines, bool phong) {
+  std::vector<std::string> list;
+  if (shines) list.emplace_back("SHINES");
+  if (phong) list.emplace_back("PHONG");
+  return list;
 }
 
 }  // namespace
 
-GBuffer::GBuffer(glm::ivec2 size, GLenum normal_format, bool shines)
+GBuffer::GBuffer(glm::ivec2 size, GLenum normal_format, bool shines, bool phong)
     : size_(size),
       shines_(shines),
+      phong_(phong),
       depth_(gl::Texture::make_2d(GL_DEPTH_COMPONENT32F, size.x, size.y)),
       position_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
       normals_(gl::Texture::make_2d(gl::renderable_format(normal_format, GL_RGBA32F), size.x, size.y)),
       albedo_(gl::Texture::make_2d(GL_RGBA16, size.x, size.y)),
       emission_(gl::Texture::make_2d(GL_RGBA32F, size.x, size.y)),
       object_id_(gl::Texture::make_2d(GL_R32UI, size.x, size.y)),
-      program_(gl::Program::raster(name, defines(shines))) {
+      program_(gl::Program::raster(name, defines(shines, phong))) {
   using Attachment = gl::Framebuffer::Attachment;
   std::vector<Attachment> colors{{&position_}, {&normals_}, {&albedo_}, {&emission_}, {&object_id_}};
   if (shines) {
@@ -39,7 +43,7 @@ GBuffer::GBuffer(glm::ivec2 size, GLenum normal_format, bool shines)
     colors.push_back({&mirror_});
     constexpr int n = DIRECTIONAL_ALBEDO_SIZE;
     directional_albedo_ = gl::Texture::make_2d(GL_RG32F, n, n);
-    glTextureSubImage2D(directional_albedo_.id(), 0, 0, 0, n, n, GL_RG, GL_FLOAT, directional_albedo().data());
+    glTextureSubImage2D(directional_albedo_.id(), 0, 0, 0, n, n, GL_RG, GL_FLOAT, directional_albedo(phong).data());
     directional_albedo_.filter(GL_LINEAR, GL_LINEAR);
   }
   framebuffer_ = gl::Framebuffer(colors, {&depth_}, size);

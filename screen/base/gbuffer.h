@@ -25,7 +25,8 @@ class GBuffer {
   /// @param normal_format  of normals(); RGBA32F, twice as large, where this GPU cannot render to it: GL does not
   /// require that of signed normalised formats.
   /// @param shines  some material is not Lambertian: diffuse() and mirror() are there.
-  explicit GBuffer(glm::ivec2 size, GLenum normal_format = GL_RGBA16_SNORM, bool shines = false);
+  /// @param phong  has_phong_lobes() of the scene.
+  explicit GBuffer(glm::ivec2 size, GLenum normal_format = GL_RGBA16_SNORM, bool shines = false, bool phong = false);
   void run(const gl::SceneBuffers& scene, const Camera& camera, gl::PassTimer& timer);
 
   /// Where in its pixel every sample lies, from the centre. [pixels]
@@ -41,6 +42,7 @@ class GBuffer {
   /// Those of surfaces that shine, beside them.
   void bind_shine() const;
   bool shines() const { return shines_; }
+  bool phong() const { return phong_; }
   size_t bytes() const { return (4 + 16 + 8 + 8 + 16 + 4 + (shines_ ? 16 : 0)) * size_t(size_.x) * size_t(size_.y); }
   const gl::Texture& depth() const { return depth_; }        // D32F, 1 at znear, 0 at zfar and in the background
   const gl::Texture& position() const { return position_; }  // RGBA32F, centred frame; w = 1, or 0 in the background
@@ -58,7 +60,7 @@ class GBuffer {
 
  private:
   glm::ivec2 size_;
-  bool shines_;
+  bool shines_, phong_;
   glm::vec2 jitter_{0.0f};
   glm::mat4 clip_from_world_{1.0f};
   std::optional<float> mirror_apart_;

@@ -25,8 +25,8 @@ Frame::Frame(const Scene& scene, const FrameOptions& options, Recipe recipe,
       recipe_(std::move(recipe)),
       buffers_(triangles ? std::move(triangles) : std::make_shared<gl::SceneBuffers>(scene)),
       shadow_maps_(options.of<ReflectiveShadowMap::Resolution>()),
-      gbuffer_(options.size, GL_RGBA16_SNORM, shines(scene)),
-      direct_(options.size, gbuffer_.shines(), buffers_->has_glass()),
+      gbuffer_(options.size, GL_RGBA16_SNORM, shines(scene), has_phong_lobes(scene)),
+      direct_(options.size, gbuffer_.shines(), buffers_->has_glass(), gbuffer_.phong()),
       compose_(options.size) {
   follow_with_stages();
 }

@@ -58,6 +58,14 @@ SHARED_FUNCTION Pane pane_of(vec4 base, int tinted) {
   return pane;
 }
 
+// Exponent of the Phong lobe (R.l)^n that is about as wide as GGX of a perceptual roughness: a facet turned by an angle
+// turns its mirror's direction by twice that, so cos^(4 n) of facets is cos^n of directions, and GGX's alpha^2 is
+// 2 / (4 n + 2).
+SHARED_FUNCTION float phong_exponent(float roughness) {
+  float alpha = roughness * roughness;
+  return max(0.5f / max(alpha * alpha, 1e-6f) - 0.5f, 0.0f);
+}
+
 // Mean of Schlick's (1 - v.h)^5 over a Lambertian surface's directions of light and view.
 #define SCHLICK_OF_DIFFUSE 0.0036868f
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/surface.h"
 #include "screen/bounces/glossy/lobe_rays.h"
 #include "screen/bounces/glossy/side_radiosity.h"
 
@@ -45,7 +46,8 @@ StageRole role(const FrameOptions& options) {
 
 class GlossyStage : public Stage {
  public:
-  explicit GlossyStage(const StageContext& context) : rays_(context.options.size, context.options.of<Options>()) {}
+  explicit GlossyStage(const StageContext& context)
+      : rays_(context.options.size, context.options.of<Options>(), has_phong_lobes(context.scene)) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& volume = frame.get<FrameVolume>();

@@ -14,7 +14,7 @@ gl::Texture picture(glm::ivec2 size) { return gl::Texture::make_2d(GL_RGBA32F, s
 
 }  // namespace
 
-LobeRays::LobeRays(glm::ivec2 size, const GlossyOptions& options)
+LobeRays::LobeRays(glm::ivec2 size, const GlossyOptions& options, bool phong)
     : size_(size),
       options_(options),
       direct_(picture(size)),
@@ -24,7 +24,8 @@ LobeRays::LobeRays(glm::ivec2 size, const GlossyOptions& options)
       counts_(2 * sizeof(GLuint)),
       no_lights_(sizeof(shared::VirtualLight)),
       light_sides_program_(gl::Program::compute("screen/bounces/glossy/light_sides.comp.glsl")),
-      rays_(gl::Program::compute("screen/bounces/glossy/lobe_rays.comp.glsl")),
+      rays_(gl::Program::compute("screen/bounces/glossy/lobe_rays.comp.glsl",
+                                 phong ? std::vector<std::string>{"PHONG"} : std::vector<std::string>{})),
       join_(gl::Program::compute("screen/bounces/glossy/join_lobes.comp.glsl")) {}
 
 void LobeRays::run(const GBuffer& gbuffer, const Camera& camera, const Seen& seen, gl::PassTimer& timer, int sample) {

@@ -30,7 +30,8 @@ class LobeRays {
  public:
   static constexpr const char* name = "screen/bounces/glossy/lobe_rays";
   static constexpr const char* join_name = "screen/bounces/glossy/join_lobes";
-  LobeRays(glm::ivec2 size, const GlossyOptions& options);
+  /// @param phong  has_phong_lobes().
+  LobeRays(glm::ivec2 size, const GlossyOptions& options, bool phong);
 
   struct Seen {
     const VoxelGridGl& voxels;

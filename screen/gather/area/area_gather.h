@@ -20,20 +20,25 @@ struct AreaGatherOptions {
   float tolerance = 0.05f;  // of irradiance, between neighbours, above which what lies between them is gathered
   float in_part = 0.5f;     // share of the lights whose visibility may differ there
   bool incremental = true;  // lights that all neighbours see, or none does, are not asked again
+  int interleave = 4;       // levels of so many pixels or fewer between neighbours share ways out; 0: none
 };
 
-/// Passes "screen/gather/area/gather" and "screen/gather/area/shade": light straight from emissive surfaces, of at most
-/// 256 virtual lights on them, at pixels coarse to fine: a level's pixels are gathered where its surface has an edge,
-/// or where light or visibility vary between those of the level before; the others are interpolated. Each pixel keeps a
-/// bit for every light, so that a finer one asks only for those on which its neighbours disagree.
-/// Source: Nichols 2010, §5.3.2 to §5.3.4; we depart: pixels instead of patches, as in screen/base/smooth_pixels.h, so
-/// that nothing is upsampled; a level's own variation is what its neighbours show, so masks need no stencil buffer;
-/// and every pixel has all bits, where the thesis shares them out to blocks of 2 x 2.
-/// Deterministic. Cost: a form factor for each light at each gathered pixel, a way for those that are asked;
-/// 48 bytes a pixel.
+/// Passes "screen/gather/area/gather_N", N the pixels between neighbours of a level, and "screen/gather/area/shade":
+/// light straight from emissive surfaces by virtual lights on them, at pixels coarse to fine: a level's pixels are
+/// gathered where its surface has an edge, or where light or visibility vary between those of the level before; the
+/// others are interpolated. Lights that follow on one another are one of 64 groups. Each pixel keeps two bits for every
+/// group, whether some and whether all of its lights are seen, so that a finer one asks only for groups on which its
+/// neighbours disagree. On fine levels a pixel asks for a quarter of the lights, each of which counts for the four
+/// around it, as pixels around it ask for the other ones; on the finest it then takes the mean of them. Source: Nichols
+/// 2010, §5.3.2 to §5.3.4; we depart: pixels instead of patches, as in screen/base/smooth_pixels.h, so that nothing is
+/// upsampled; a level's own variation is what its neighbours show, so masks need no stencil buffer; bits are of groups,
+/// so that more than 256 lights take no more of them; and pixels share visibility out, not light, on levels of
+/// `interleave` and finer, as coarse ones are few and far apart. Deterministic. Cost: a form factor for each light at
+/// each gathered pixel, a way for those that are asked; 65 bytes a pixel.
 class AreaGather {
  public:
   static constexpr const char* name = "screen/gather/area/gather";
+  static std::string level_name(int step_px);  // of its pass
   static constexpr const char* shade_name = "screen/gather/area/shade";
   /// @throws Error(usage) when options.coarsest is none of its values.
   static void check(const AreaGatherOptions& options);
@@ -44,11 +49,12 @@ class AreaGather {
     const ScreenVoxels* voxels;
     const BlockedFaces* faces;
   };
-  /// @param lights  at most 256.
   void run(const GBuffer& gbuffer, const AreaLights& lights, const Hidden& hidden, gl::PassTimer& timer);
   /// The faces of the next run are others.
   void scene_moved() { cells_.forget(); }
 
+  static int lights_in_group(int lights);                    // bits of masks() are of so many each
+  const gl::Texture& masks() const { return masks_; }        // RGBA32UI: known_mask of area_level.glsl
   const gl::Texture& radiance() const { return radiance_; }  // RGBA32F [W m^-2 sr^-1]
   /// R8UI: of the level on which a pixel was gathered [pixels], 0 where it was interpolated.
   const gl::Texture& gathered_step() const { return gathered_step_; }
@@ -68,18 +74,24 @@ class AreaGather {
   }
 
  private:
-  void refine(int step_px, const WorkList& list);
-  void gather(int step_px, const AreaLights& lights, const Hidden& hidden, const WorkList& list);
+  /// Pixels of a level that have the same share of each group's lights, or all of them.
+  struct Level {
+    int step_px;
+    std::vector<WorkList> lists;
+  };
+  void refine(const Level& level, int groups);
+  void gather(const Level& level, const AreaLights& lights, const Hidden& hidden);
+  void join(const Level& level);
   void bind_pictures() const;
   const gl::Program& gather_program(bool first, const Hidden& hidden);
 
   glm::ivec2 size_;
   AreaGatherOptions options_;
-  std::vector<WorkList> lists_;  // of each level, the coarsest first
-  gl::Texture irradiance_, masks_[2], gathered_step_, radiance_;
+  std::vector<Level> levels_;  // the coarsest first
+  gl::Texture irradiance_, shared_irradiance_, masks_, gathered_step_, radiance_;
   gl::Buffer counts_;
   FaceWalkCells cells_;
-  gl::Program first_, finer_, shade_;
+  gl::Program first_, finer_, join_, shade_;
   std::string hides_;  // what the next two were made for
   gl::Program gather_first_, gather_finer_;
 };

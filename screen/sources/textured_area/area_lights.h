@@ -16,9 +16,9 @@ struct AreaLightOptions {
 
 /// Pass "screen/sources/textured_area/area_lights": every emissive mesh as an area light, its texture kept: virtual
 /// lights on it, one- or two-sided as its material is, uploaded when the scene has moved or another picture of many
-/// begins. Source: Nichols 2010, §5.3.2 (16 x 16 on a grid; 32 x 32 ... 128 x 128 in §5.4.7); we depart: by default
-/// lights stand where the light is, which on a black screen with one bright square are those on the square (its
-/// Fig. 5.15). Cost: a look at the texture for each light, on the CPU.
+/// begins, neighbours beside one another in the list. Source: Nichols 2010, §5.3.2 (16 x 16 on a grid; 32 x 32 ... 128
+/// x 128 in §5.4.7); we depart: by default lights stand where the light is, which on a black screen with one bright
+/// square are those on the square (its Fig. 5.15). Cost: a look at the texture for each light, on the CPU.
 class AreaLights {
  public:
   static constexpr const char* name = "screen/sources/textured_area/area_lights";
@@ -32,6 +32,7 @@ class AreaLights {
   /// The scene's geometry, or what it emits, is another than before.
   void scene_moved();
 
+  const EmitterPoints& emitters() const { return emitters_; }
   const gl::Buffer& buffer() const { return buffer_; }  // shared::VirtualLight, VIRTUAL_LIGHT_EMITTED, count() of them
   int count() const { return count_; }
   /// How closely lights stand where a surface emits radiosity B [W m^-2], on the mean [m^-2]: by the luminance of B,

@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/gl/raster_state.h"
 #include "shaders/screen/visibility/screen_voxels/slots.shared.h"
+#include "shaders/shared/group_sizes.shared.h"
 
 namespace volgi::screen {
 
@@ -13,10 +14,12 @@ ScreenVoxels::ScreenVoxels(const ScreenVoxelOptions& options) : options_(options
   const int b = options.bits;
   if (b != 128 && b != 256 && b != 512 && b != 1024)
     throw Error(ExitCode::usage, "voxels.bits: 128, 256, 512 or 1024, not " + std::to_string(b));
-  voxels_ = gl::Texture::make_2d_array(GL_R32UI, options.texels, options.texels, b / 32);
+  for (gl::Texture* t : {&voxels_, &wide_along_rows_, &wide_})
+    *t = gl::Texture::make_2d_array(GL_R32UI, options.texels, options.texels, b / 32);
   framebuffer_ = gl::Framebuffer::without_attachments(glm::ivec2(options.texels));
   program_ = gl::Program::raster("screen/base/reflective_shadow_map.vert.glsl",
                                  "screen/visibility/screen_voxels/voxelize.frag.glsl");
+  widen_ = gl::Program::compute("screen/visibility/screen_voxels/widen.comp.glsl");
 }
 
 void ScreenVoxels::run(const gl::SceneBuffers& buffers, const Scene& scene, const Camera& camera, glm::ivec2 picture,
@@ -49,10 +52,22 @@ void ScreenVoxels::run(const gl::SceneBuffers& buffers, const Scene& scene, cons
   program_.set("slice_from_world", slice_from_world_);
   buffers.draw(program_);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+  widen(voxels_, {1, 0}, wide_along_rows_);
+  widen(wide_along_rows_, {0, 1}, wide_);
+}
+
+void ScreenVoxels::widen(const gl::Texture& from, glm::ivec2 axis, const gl::Texture& to) const {
+  from.bind(VOXEL_BITS_UNIT);
+  to.bind_image(VOXEL_BITS_IMAGE, GL_WRITE_ONLY);
+  widen_.set("axis", axis);
+  widen_.use();
+  gl::dispatch({options_.texels, options_.texels, options_.bits / 32}, {SQUARE_GROUP, SQUARE_GROUP, 1});
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void ScreenVoxels::bind(const gl::Program& program) const {
   voxels_.bind(VOXEL_BITS_UNIT);
+  wide_.bind(VOXEL_WIDE_UNIT);
   program.set("voxel_clip_from_world", clip_from_world_);
   program.set("voxel_slice_from_world", slice_from_world_);
   program.set("voxel_steps", options_.steps);

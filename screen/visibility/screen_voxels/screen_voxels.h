@@ -21,7 +21,8 @@ struct ScreenVoxelOptions {
 /// Source: Nichols 2010, §5.3.3, after Eisemann and Decoret; we depart: atomic OR into the layers of one integer
 /// texture instead of a logical operation of the blend stage, so that more than 128 slices need no more targets, and
 /// fragments are as thick as they lean. What the camera does not see, beside or behind it, hides nothing.
-/// Cost: a draw of the scene; bits / 8 bytes a texel. A way: as many samples as it crosses voxels, at most `steps`.
+/// Cost: a draw of the scene; 3 bits / 8 bytes a texel. A way: as many samples as it crosses voxels, at most `steps`,
+/// or a quarter of that where nothing is near it: a second texture has what lies in 4 x 4 texels from each on.
 class ScreenVoxels {
  public:
   static constexpr const char* name = "screen/visibility/screen_voxels";
@@ -35,14 +36,17 @@ class ScreenVoxels {
   /// Textures and uniforms of shaders/screen/visibility/screen_voxels/screen_voxels.glsl.
   void bind(const gl::Program& program) const;
 
+  int steps() const { return options_.steps; }
   const gl::Texture& bits() const { return voxels_; }  // R32UI, 32 slices a layer
-  size_t bytes() const { return size_t(options_.texels) * size_t(options_.texels) * size_t(options_.bits) / 8; }
+  size_t bytes() const { return 3 * size_t(options_.texels) * size_t(options_.texels) * size_t(options_.bits) / 8; }
 
  private:
+  void widen(const gl::Texture& from, glm::ivec2 axis, const gl::Texture& to) const;
+
   ScreenVoxelOptions options_;
-  gl::Texture voxels_;
+  gl::Texture voxels_, wide_along_rows_, wide_;
   gl::Framebuffer framebuffer_;
-  gl::Program program_;
+  gl::Program program_, widen_;
   glm::mat4 clip_from_world_{1.0f};
   glm::vec4 slice_from_world_{0.0f};  // dot(xyz, position) + w
 };

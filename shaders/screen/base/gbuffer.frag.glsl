@@ -1,6 +1,6 @@
 #version 450 core
 // What the camera sees at the centre of each pixel. Both normals are turned to the viewer's side of the triangle.
-// Set by the program: SHINES, where some material is not Lambertian
+// Set by the program: SHINES, where some material is not Lambertian; PHONG, where mirrors are Phong lobes
 #define MATERIAL_TINTED
 #include "shared/material.glsl"
 #include "shared/octahedral.glsl"
@@ -80,6 +80,9 @@ void main() {
   Reflectance reflectance;
   float roughness = material_reflectance(base.rgb, uv0, uv1, reflectance);
 #ifdef SHINES
+#ifdef PHONG
+  reflectance.at_90 = max(max(reflectance.at_0.r, reflectance.at_0.g), reflectance.at_0.b);  // no Fresnel
+#endif
   vec3 to_viewer = normalize(viewer.xyz - position * viewer.w);
   out_albedo = albedo_to_viewer(reflectance, roughness, dot(shading, to_viewer));
   out_diffuse = vec4(reflectance.diffuse, clamp(roughness, 0.0, 1.0));

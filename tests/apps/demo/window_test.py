@@ -847,6 +847,24 @@ class Screenshots(WindowCase):
         self.shot(window)
         self.assertEqual(window.quit(), 0)
 
+    def test_a_film_on_a_screen(self):
+        for k, exposure in enumerate(("3", "-1")):
+            subprocess.run([Given.volgi, "render", scene("cornell"), "--size", "8x4", "--gi", "none", "--exposure",
+                            exposure, "-o", f"film.{k:04}.png", "--quiet"], check=True, cwd=self.folder, timeout=300)
+        window = self.window(scene("emissive"), "--area-video", self.folder / "film.%04d.png", "--area-fps", "2",
+                             size=self.SIZE)
+        shown = []
+        for t in ("0", "0.5", "1"):
+            window.command_for_frame(f"time {t}")
+            command = self.shot(window)
+            self.assertIn("--area-video", command)
+            shown.append(read_png(command[command.index("-o") + 1].replace(".exr", ".png")))
+        self.assertGreater(shown[0].distance(shown[1]), 1.0)  # the film plays,
+        self.assertLess(shown[0].distance(shown[2]), 0.5)     # and begins again
+        window.command("play on")
+        window.wait("frame", None, window.mark())
+        self.assertEqual(window.quit(), 0)
+
     def test_a_scene_without_light(self):
         window = self.window(write_triangle_room(self.folder / "dark room.glb", light=False), size=self.SIZE)
         window.wait("message", lambda e: "no light" in e["text"])

@@ -48,6 +48,29 @@ TEST(DirectionalAlbedo, IsTheSumOverLight) {
   }
 }
 
+// Of a lobe (n + 2) / 2 pi (R.l)^n from in front: all of it; else as a sum over light.
+TEST(DirectionalAlbedo, OfPhongLobes) {
+  constexpr int N = screen::DIRECTIONAL_ALBEDO_SIZE;
+  for (const int row : {9, 12, 20}) {
+    for (const int column : {2, 10, 20, 31}) {
+      const double cosine = (column + 0.5) / N, sine = std::sqrt(1.0 - cosine * cosine);
+      const double n = 0.5 / std::pow((row + 0.5) / N, 4.0) - 0.5;
+      double sum = 0.0;
+      constexpr int EDGE = 400;
+      for (int i = 0; i < EDGE; ++i) {
+        const double z = (i + 0.5) / EDGE, r = std::sqrt(1.0 - z * z);
+        for (int j = 0; j < EDGE; ++j) {
+          const double along = z * cosine - r * std::cos(2.0 * glm::pi<double>() * (j + 0.5) / EDGE) * sine;
+          sum += z * std::pow(std::max(along, 0.0), n);
+        }
+      }
+      const glm::vec2 found = screen::directional_albedo(true)[size_t(row * N + column)];
+      EXPECT_NEAR(found.x, (n + 2.0) * sum / double(EDGE * EDGE), 0.005) << row << ' ' << column;
+      EXPECT_EQ(found.y, 0.0f);
+    }
+  }
+}
+
 class Shine : public GlTest {
  protected:
   static void expect_as_traced(const Scene& scene, const Camera& camera) {
@@ -85,6 +108,12 @@ Scene two_spheres() {
 
 TEST_F(Shine, MetalAndPlasticUnderALamp) {
   const Scene scene = two_spheres();
+  expect_as_traced(scene, look_at_camera({0, 1.2f, 3}, {0, 0.4f, 0}, 0.7f, scene.bounds_min, scene.bounds_max));
+}
+
+TEST_F(Shine, PhongLobesUnderALamp) {
+  Scene scene = two_spheres();
+  for (Material& m : scene.materials) m.phong = true;
   expect_as_traced(scene, look_at_camera({0, 1.2f, 3}, {0, 0.4f, 0}, 0.7f, scene.bounds_min, scene.bounds_max));
 }
 

@@ -3,10 +3,11 @@
 // on emissive surfaces, each seen as far as blocked faces let it. The two ways to find emission are weighed by how
 // likely each finds it (Veach and Guibas 1995, the balance heuristic): broad lobes find small lights by the lights,
 // narrow ones large lights by rays. Every pixel of a block takes one subset of both.
+// Set by the program: PHONG, where mirrors are Phong lobes
 #include "screen/base/gbuffer.glsl"
 #include "screen/base/halton_pixel.glsl"
+#include "screen/base/lobe.glsl"
 #include "screen/base/sky_picture.glsl"
-#include "screen/base/visible_normals.glsl"
 #include "screen/bounces/glossy/slots.shared.h"
 #include "shared/disk_to_point.shared.h"
 #include "shared/group_sizes.shared.h"
@@ -40,20 +41,10 @@ uniform float sky_rotation_rad;
 
 int subsets() { return interleave * interleave; }
 
-struct Lobe {
-  vec3 position, normal, geometric, to_viewer;
-  vec3 at_0;
-  float at_90, alpha;
-  float cos_viewer, lambda_viewer;
+struct Receiver {
+  vec3 position, geometric;
+  Lobe lobe;
 };
-
-vec3 fresnel(Lobe s, float cos_half) { return s.at_0 + (vec3(s.at_90) - s.at_0) * pow(1.0 - cos_half, 5.0); }
-
-// Of directions by visible normals: D G1 / (4 cos_viewer).
-float density_of_rays(Lobe s, vec3 l) {
-  vec3 h = normalize(s.to_viewer + l);
-  return ggx_distribution(max(dot(s.normal, h), 0.0), s.alpha) / ((1.0 + s.lambda_viewer) * 4.0 * s.cos_viewer);
-}
 
 vec3 sky_radiance(vec3 d, float density) {
   if (has_sky == 0) return vec3(0.0);
@@ -68,7 +59,7 @@ struct Seen {
 };
 
 // @param density  of all rays of a block about d [1/sr].
-Seen look(Lobe s, vec3 d, float density) {
+Seen look(Receiver s, vec3 d, float density) {
   Seen seen = Seen(vec3(0.0), vec3(0.0));
   FaceWalk walk = begin_walk(cell_from_world(grid, s.position), s.geometric, d);
   float left = 1.0;
@@ -90,21 +81,16 @@ Seen look(Lobe s, vec3 d, float density) {
   return seen;
 }
 
-Seen by_rays(Lobe s, int subset) {
+Seen by_rays(Receiver s, int subset) {
   Seen sum = Seen(vec3(0.0), vec3(0.0));
-  mat3 frame = frame_around(s.normal);
-  vec3 v = s.to_viewer * frame;
-  v = normalize(vec3(v.xy, max(v.z, 1e-4)));
+  mat3 frame = frame_around(s.lobe.normal);
   for (int k = 0; k < rays; ++k) {
     uint i = uint(first_point + k * subsets() + subset);
-    vec2 xi = vec2(float(bitfieldReverse(i)) / 4294967296.0, radical_inverse_3(i));
-    vec3 h = frame * visible_normal(v, s.alpha, xi);
-    vec3 l = reflect(-s.to_viewer, h);
-    float cosine = dot(s.normal, l);
+    vec3 l = lobe_direction(s.lobe, frame, vec2(float(bitfieldReverse(i)) / 4294967296.0, radical_inverse_3(i)));
+    float cosine = dot(s.lobe.normal, l);
     if (cosine <= 0.0 || dot(s.geometric, l) <= 0.0) continue;
-    float both = (1.0 + s.lambda_viewer) / (1.0 + s.lambda_viewer + smith_lambda(cosine, s.alpha));
-    vec3 weight = fresnel(s, clamp(dot(s.to_viewer, h), 0.0, 1.0)) * (both / float(rays));
-    Seen seen = look(s, l, float(rays * subsets()) * density_of_rays(s, l));
+    vec3 weight = lobe_weight(s.lobe, l, cosine) / float(rays);
+    Seen seen = look(s, l, float(rays * subsets()) * lobe_density(s.lobe, l));
     sum.direct += weight * seen.direct;
     sum.indirect += weight * seen.indirect;
   }
@@ -112,26 +98,21 @@ Seen by_rays(Lobe s, int subset) {
 }
 
 // Not asking what hides it.
-vec3 of_light(Lobe s, VirtualLight light, float there) {
+vec3 of_light(Receiver s, VirtualLight light, float there) {
   vec3 w = light.position - s.position;
-  float squared = dot(w, w), height = -dot(w, light.normal), along = dot(w, s.normal);
+  float squared = dot(w, w), height = -dot(w, light.normal), along = dot(w, s.lobe.normal);
   if (min(height, min(along, dot(w, s.geometric))) <= 0.0) return vec3(0.0);
   float nearer = inversesqrt(squared);
   vec3 l = w * nearer;
-  vec3 h = normalize(s.to_viewer + l);
-  float cosine = max(along * nearer, 1e-4);
-  float distribution = ggx_distribution(max(dot(s.normal, h), 0.0), s.alpha);
-  float masking = 1.0 / (1.0 + s.lambda_viewer + smith_lambda(cosine, s.alpha));
-  vec3 reflectance = fresnel(s, clamp(dot(s.to_viewer, h), 0.0, 1.0)) *
-                     (distribution * masking / (4.0 * s.cos_viewer * cosine));
-  float form = disk_to_point(height, along, -dot(light.normal, s.normal), squared, light.area_m2);
-  float of_rays = float(rays * subsets()) * distribution / ((1.0 + s.lambda_viewer) * 4.0 * s.cos_viewer);
+  vec3 reflectance = lobe_reflectance(s.lobe, l, max(along * nearer, 1e-4));
+  float form = disk_to_point(height, along, -dot(light.normal, s.lobe.normal), squared, light.area_m2);
+  float of_rays = float(rays * subsets()) * lobe_density(s.lobe, l);
   // As rays count it, which know the light's surface by its side.
   float of_lights = (there * lights_per_watt + lights_per_m2) * squared / max(height * nearer, 1e-3);
   return light.flux * reflectance * (there > 0.0 ? form * of_lights / (of_rays + of_lights) : form);
 }
 
-float seen_share(Lobe s, vec3 light) {
+float seen_share(Receiver s, vec3 light) {
   vec3 point = cell_from_world(grid, s.position), w = cell_from_world(grid, light) - point;
   float cells = length(w);
   FaceWalk walk = begin_walk(point, s.geometric, w / cells);
@@ -139,7 +120,7 @@ float seen_share(Lobe s, vec3 light) {
 }
 
 // Lights that together are at most a thirty-second of all are seen as far as the others.
-vec3 by_lights(Lobe s, int subset) {
+vec3 by_lights(Receiver s, int subset) {
   float all = 0.0, looked_at = 0.0, seen = 0.0;
   for (int k = subset; k < light_count; k += subsets()) all += luminance(of_light(s, area_lights[k], emitted_there[k]));
   float least = all * float(subsets()) / (32.0 * float(light_count));
@@ -168,16 +149,11 @@ void main() {
   if (position.w != 0.0 && apart > 0.0) {
     vec4 normals = texelFetch(normal_map, pixel, 0), mirror = texelFetch(mirror_map, pixel, 0);
     float roughness = texelFetch(diffuse_map, pixel, 0).a;
-    Lobe s;
+    Receiver s;
     s.position = position.xyz;
-    s.normal = octahedral_decode(normals.xy);
     s.geometric = octahedral_decode(normals.zw);
-    s.to_viewer = normalize(viewer.xyz - position.xyz * viewer.w);
-    s.at_0 = mirror.rgb;
-    s.at_90 = mirror.a;
-    s.alpha = max(roughness, least_roughness) * max(roughness, least_roughness);
-    s.cos_viewer = max(dot(s.normal, s.to_viewer), 1e-4);
-    s.lambda_viewer = smith_lambda(s.cos_viewer, s.alpha);
+    s.lobe = lobe_of(octahedral_decode(normals.xy), normalize(viewer.xyz - position.xyz * viewer.w), mirror,
+                     max(roughness, least_roughness));
     ivec2 place = pixel % interleave;
     int subset = place.x + interleave * place.y;
     Seen seen = by_rays(s, subset);

@@ -6,7 +6,8 @@
 #include "shared/octahedral.glsl"
 
 layout(binding = AREA_IRRADIANCE_UNIT) uniform sampler2D known_irradiance;
-layout(binding = AREA_MASK_UNIT) uniform usampler2D known_mask[2];  // lights that are seen
+// Of each group of lights a bit in xy: some of them are seen; and in zw: all of them are.
+layout(binding = AREA_MASK_UNIT) uniform usampler2D known_mask;
 uniform int step_px;
 
 #define LEAST_COSINE 0.8
@@ -45,19 +46,19 @@ Corners corners_of(ivec2 pixel, vec3 position, vec3 normal) {
   return c;
 }
 
-// Lights that all corners see, and those that none does; 0 of both where they are not whole.
-void agreed(Corners c, int half_of_lights, out uvec4 seen, out uvec4 hidden) {
-  seen = uvec4(0xffffffffu);
-  hidden = uvec4(0xffffffffu);
+// Groups of which all corners see every light, and of which none sees any; 0 of both where they are not whole.
+void agreed(Corners c, out uvec2 seen, out uvec2 hidden) {
+  seen = uvec2(0xffffffffu);
+  hidden = uvec2(0xffffffffu);
   for (int k = 0; k < 4; ++k) {
     if (c.weights[k] <= 0.0) continue;
-    uvec4 mask = half_of_lights == 0 ? texelFetch(known_mask[0], c.at[k], 0) : texelFetch(known_mask[1], c.at[k], 0);
-    seen &= mask;
-    hidden &= ~mask;
+    uvec4 mask = texelFetch(known_mask, c.at[k], 0);
+    seen &= mask.zw;
+    hidden &= ~mask.xy;
   }
   if (!c.whole) {
-    seen = uvec4(0u);
-    hidden = uvec4(0u);
+    seen = uvec2(0u);
+    hidden = uvec2(0u);
   }
 }
 

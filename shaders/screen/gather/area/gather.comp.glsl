@@ -1,6 +1,7 @@
 #version 450 core
-// Irradiance of lights on emissive surfaces at the pixels of a list, and a bit for each of whether it is seen. A light
-// that all corners of the coarser level see, or none, is not asked again (Nichols 2010, section 5.3.3.2).
+// Irradiance of lights on emissive surfaces at the pixels of a list, and bits of which groups of lights are seen. A
+// group on which all corners of the coarser level agree is not asked for again (Nichols 2010, section 5.3.3.2). Threads
+// share out what ways their pixels ask for, or all would wait for the one that asks for most.
 // Set by the program: FIRST, the coarsest level; VOXELS or FACES, what hides lights
 #include "screen/base/coarse_pixels.glsl"
 #include "screen/gather/area/area_level.glsl"
@@ -15,20 +16,32 @@
 #endif
 
 layout(local_size_x = LINEAR_GROUP) in;
-layout(binding = AREA_IRRADIANCE_IMAGE, rgba32f) uniform writeonly image2D irradiance;
-layout(binding = AREA_MASK_IMAGE, rgba32ui) uniform writeonly uimage2D mask_low;
-layout(binding = AREA_MASK_IMAGE + 1, rgba32ui) uniform writeonly uimage2D mask_high;
+layout(binding = AREA_IRRADIANCE_IMAGE, rgba32f) uniform image2D irradiance;
+layout(binding = AREA_MASK_IMAGE, rgba32ui) uniform uimage2D masks;
 layout(std430, binding = AREA_LIST_SLOT) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 layout(std430, binding = AREA_LIGHTS_SLOT) readonly buffer AreaLights { VirtualLight area_lights[]; };
 layout(std430, binding = AREA_COUNTS_SLOT) buffer Counts { uint ways, ways_asked; };
 uniform int light_count;
+uniform int per_group;  // lights
+uniform int shares;     // of each group every shares-th light is asked for, for those around it too
+uniform int first;      // of each group's lights
+uniform int end;        // of them, in this dispatch
+uniform ivec2 groups;   // from, up to
+uniform int begun;      // there were others before
 uniform int incremental;
 
 #define BODY_CELLS 1.2  // before a light
 
+shared vec3 positions[LINEAR_GROUP], geometric_normals[LINEAR_GROUP];
+shared uint open_bits[LINEAR_GROUP * 2];
+shared uint ways_listed[LINEAR_GROUP * AREA_GROUPS];  // pixel, and group in the low bits
+shared uint way_count, all_ways, all_asked;
+
+int asked_light(int group, int member) { return min(group * per_group + member, light_count - 1); }
+
 bool is_seen(vec3 position, vec3 normal, VirtualLight light) {
 #ifdef VOXELS
-  return !voxels_hide(position, normal, light.position, light.normal);
+  return !voxels_hide(voxel_end(position, normal), voxel_end(light.position, light.normal));
 #elif defined(FACES)
   vec3 point = cell_from_world(grid, position), w = cell_from_world(grid, light.position) - point;
   float cells = length(w);
@@ -39,55 +52,104 @@ bool is_seen(vec3 position, vec3 normal, VirtualLight light) {
 #endif
 }
 
+// Irradiance, whatever lies between. Lights that look away or are black, and what looks away from them, are left out.
+vec3 arriving(VirtualLight light, vec3 position, vec3 normal, vec3 geometric) {
+  vec3 w = light.position - position;
+  float height = -dot(w, light.normal), along = dot(w, normal);
+  if (min(height, min(along, dot(w, geometric))) <= 0.0) return vec3(0.0);
+  return light.flux * disk_to_point(height, along, -dot(light.normal, normal), dot(w, w), light.area_m2);
+}
+
+// Of the lights for which one of them is asked: as many as pixels share out.
+vec3 arriving_of(int group, int member, vec3 position, vec3 normal, vec3 geometric) {
+  int begin = group * per_group + member / shares * shares;
+  vec3 sum = vec3(0.0);
+  for (int k = begin; k < min(begin + shares, light_count); ++k)
+    sum += arriving(area_lights[k], position, normal, geometric);
+  return sum;
+}
+
+uint bits_between(ivec2 range, int first) {
+  ivec2 r = clamp(range - first, 0, 32);
+  return r.x >= r.y ? 0u : (0xffffffffu >> uint(32 - (r.y - r.x))) << uint(r.x);
+}
+
 void main() {
-  int index = int(global_index());
-  if (index >= int(head.count)) return;
-  ivec2 pixel = unpack_pixel(listed[index]);
+  int index = int(global_index()), own = int(gl_LocalInvocationIndex);
+  bool listed_here = index < int(head.count);
+  ivec2 pixel = listed_here ? unpack_pixel(listed[index]) : ivec2(0);
   vec3 position = texelFetch(position_map, pixel, 0).xyz;
   vec4 normals = texelFetch(normal_map, pixel, 0);
   vec3 normal = octahedral_decode(normals.xy), geometric = octahedral_decode(normals.zw);
-  uvec4 seen[2] = uvec4[2](uvec4(0u), uvec4(0u)), hidden[2] = uvec4[2](uvec4(0u), uvec4(0u));
-#ifndef FIRST
-  if (incremental != 0) {
-    Corners c = corners_of(pixel, position, normal);
-    agreed(c, 0, seen[0], hidden[0]);
-    agreed(c, 1, seen[1], hidden[1]);
+  positions[own] = position;
+  geometric_normals[own] = geometric;
+  if (own == 0) {
+    way_count = 0u;
+    all_ways = 0u;
+    all_asked = 0u;
   }
+  uvec2 seen = uvec2(0u), hidden = uvec2(0u);
+#ifndef FIRST
+  if (incremental != 0 && listed_here) agreed(corners_of(pixel, position, normal), seen, hidden);
 #endif
   vec3 sum = vec3(0.0);
-  uvec4 mask[2] = uvec4[2](uvec4(0u), uvec4(0u));
-  uint shone = 0u, asked = 0u;
-  for (int word = 0; word < 8 && 32 * word < light_count; ++word) {
-    uint known_seen = word < 4 ? seen[0][word] : seen[1][word - 4];
-    uint known_hidden = word < 4 ? hidden[0][word] : hidden[1][word - 4];
-    uint bits = 0u;
-    int end = min(light_count - 32 * word, 32);
-    for (int k = 0; k < end; ++k) {
-      VirtualLight light = area_lights[32 * word + k];
-      vec3 w = light.position - position;
-      float height = -dot(w, light.normal), along = dot(w, normal);
-      // Lights that look away or are black, and what looks away from them, are left out; a bit is what other surfaces
-      // do.
-      bool faces = min(height, min(along, dot(w, geometric))) > 0.0 && light.flux != vec3(0.0);
-      bool open = true;
-      if (faces) {
-        ++shone;
-        open = (known_seen >> uint(k) & 1u) != 0u;
-        if (((known_seen | known_hidden) >> uint(k) & 1u) == 0u) {
-          ++asked;
-          open = is_seen(position, geometric, light);
-        }
-      }
-      if (open) bits |= 1u << uint(k);
-      if (faces && open)
-        sum += light.flux * disk_to_point(height, along, -dot(light.normal, normal), dot(w, w), light.area_m2);
+  uvec2 some_seen = uvec2(0u), all_seen = uvec2(0xffffffffu), faced = uvec2(0u);
+  barrier();
+  for (int member = first; member < end; member += shares) {
+    int end_group = min((light_count - member / shares * shares + per_group - 1) / per_group, groups.y);
+    uvec2 facing = uvec2(0u);
+    for (int group = groups.x; group < end_group; ++group) {
+      vec3 light = listed_here ? arriving_of(group, member, position, normal, geometric) : vec3(0.0);
+      if (light == vec3(0.0)) continue;
+      uint bit = 1u << uint(group & 31);
+      if (group < 32) facing.x |= bit;
+      else facing.y |= bit;
+      if (((group < 32 ? seen.x : seen.y) & bit) != 0u) sum += light;
     }
-    if (word < 4) mask[0][word] = bits;
-    else mask[1][word - 4] = bits;
+    uvec2 open = facing & seen, unknown = facing & ~(seen | hidden);
+    uint asked = uint(bitCount(unknown.x) + bitCount(unknown.y)), at = atomicAdd(way_count, asked);
+    atomicAdd(all_ways, uint(bitCount(facing.x) + bitCount(facing.y)));
+    open_bits[2 * own] = 0u;
+    open_bits[2 * own + 1] = 0u;
+    for (int word = 0; word < 2; ++word) {
+      uint left = word == 0 ? unknown.x : unknown.y;
+      for (; left != 0u; left &= left - 1u) ways_listed[at++] = uint(own * AREA_GROUPS + 32 * word + findLSB(left));
+    }
+    barrier();
+    for (int k = own; k < int(way_count); k += LINEAR_GROUP) {
+      int from = int(ways_listed[k]) / AREA_GROUPS, group = int(ways_listed[k]) % AREA_GROUPS;
+      if (is_seen(positions[from], geometric_normals[from], area_lights[asked_light(group, member)]))
+        atomicOr(open_bits[2 * from + group / 32], 1u << uint(group & 31));
+    }
+    barrier();
+    uvec2 found = uvec2(open_bits[2 * own], open_bits[2 * own + 1]);
+    for (int group = groups.x; group < end_group; ++group) {
+      if (((group < 32 ? found.x : found.y) >> uint(group & 31) & 1u) != 0u)
+        sum += arriving_of(group, member, position, normal, geometric);
+    }
+    open |= found;
+    faced |= facing;
+    some_seen |= open;
+    all_seen &= open | ~facing;
+    if (own == 0) {
+      all_asked += way_count;
+      way_count = 0u;
+    }
+    barrier();
   }
-  imageStore(irradiance, pixel, vec4(sum, 1.0));
-  imageStore(mask_low, pixel, mask[0]);
-  imageStore(mask_high, pixel, mask[1]);
-  atomicAdd(ways, shone);
-  atomicAdd(ways_asked, asked);
+  if (listed_here) {
+    uvec2 here = uvec2(bits_between(groups, 0), bits_between(groups, 32));
+    uvec4 mask = uvec4((some_seen | ~faced) & here, all_seen);
+    if (begun != 0) {
+      uvec4 before = imageLoad(masks, pixel);
+      mask = uvec4(mask.xy | before.xy, mask.zw & before.zw);
+      sum += imageLoad(irradiance, pixel).rgb;
+    }
+    imageStore(irradiance, pixel, vec4(sum, 1.0));
+    imageStore(masks, pixel, mask);
+  }
+  if (own == 0) {
+    atomicAdd(ways, all_ways);
+    atomicAdd(ways_asked, all_asked);
+  }
 }

@@ -1,30 +1,33 @@
 #version 450 core
 // Which pixels of a level are gathered, and what the others have from the coarser one (Nichols 2010, section 5.3.4):
 // those at edges of geometry, where light varies between the corners, where the visibility of many lights does. FIRST:
-// the coarsest level, all of it.
-#include "screen/gather/area/area_level.glsl"
+// the coarsest level, all of it. Of a level whose pixels share lights, those that have one share.
 #include "screen/base/coarse_pixels.glsl"
+#include "screen/gather/area/area_level.glsl"
 #include "shared/group_sizes.shared.h"
 #include "shared/luminance.glsl"
 
 layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 layout(binding = AREA_IRRADIANCE_IMAGE, rgba32f) uniform writeonly image2D irradiance;
-layout(binding = AREA_MASK_IMAGE, rgba32ui) uniform writeonly uimage2D mask_low;
-layout(binding = AREA_MASK_IMAGE + 1, rgba32ui) uniform writeonly uimage2D mask_high;
+layout(binding = AREA_MASK_IMAGE, rgba32ui) uniform writeonly uimage2D masks;
 layout(binding = AREA_STEP_IMAGE, r8ui) uniform writeonly uimage2D gathered_step;
 layout(std430, binding = AREA_LIST_SLOT) buffer PixelList { WorkListHead head; uint listed[]; };
-uniform float tolerance;       // of irradiance, between corners
-uniform int most_in_part;      // lights that some corners see and others do not
+uniform float tolerance;    // of irradiance, between corners
+uniform float most_in_part; // groups that are seen in part, or from some corners only
+uniform int share;
+uniform int shares;
 
-int count_bits4(uvec4 v) { return bitCount(v.x) + bitCount(v.y) + bitCount(v.z) + bitCount(v.w); }
+int count_bits2(uvec2 v) { return bitCount(v.x) + bitCount(v.y); }
 
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) * step_px;
+  // Shares go by i + 2 j: along rows, columns and diagonals pixels of all of them follow on one another.
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 pixel = step_px * (shares == 1 ? at : ivec2(shares * at.x + (share - 2 * at.y & shares - 1), at.y));
   if (any(greaterThanEqual(pixel, textureSize(position_map, 0)))) return;
   vec4 position = texelFetch(position_map, pixel, 0);
   bool known = position.w == 0.0;  // nothing
   vec3 sum = vec3(0.0);
-  uvec4 low = uvec4(0u), high = uvec4(0u);
+  uvec4 mask = uvec4(0u);
 #ifndef FIRST
   if (all(equal(pixel % (2 * step_px), ivec2(0)))) return;  // of the coarser level
   if (!known) {
@@ -40,20 +43,16 @@ void main() {
       if (c.weights[k] > largest) nearest = k;
       largest = max(largest, c.weights[k]);
     }
-    uvec4 seen, hidden;
-    agreed(c, 0, seen, hidden);
-    int in_part = count_bits4(~(seen | hidden));
-    agreed(c, 1, seen, hidden);
-    in_part += count_bits4(~(seen | hidden));
+    uvec2 seen, hidden;
+    agreed(c, seen, hidden);
+    float in_part = float(count_bits2(~(seen | hidden)));
     known = c.whole && most - least <= tolerance * most && in_part <= most_in_part;
-    low = texelFetch(known_mask[0], c.at[nearest], 0);
-    high = texelFetch(known_mask[1], c.at[nearest], 0);
+    mask = texelFetch(known_mask, c.at[nearest], 0);
   }
 #endif
   if (known) {
     imageStore(irradiance, pixel, vec4(sum, 1.0));
-    imageStore(mask_low, pixel, low);
-    imageStore(mask_high, pixel, high);
+    imageStore(masks, pixel, mask);
   } else {
     imageStore(gathered_step, pixel, uvec4(step_px));
     uint slot;

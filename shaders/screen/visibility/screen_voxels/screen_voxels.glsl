@@ -4,72 +4,104 @@
 #include "screen/visibility/screen_voxels/slots.shared.h"
 
 layout(binding = VOXEL_BITS_UNIT) uniform usampler2DArray voxel_bits;
+layout(binding = VOXEL_WIDE_UNIT) uniform usampler2DArray voxel_wide;  // of VOXEL_RUN x VOXEL_RUN texels from each on
 uniform mat4 voxel_clip_from_world;
 uniform vec4 voxel_slice_from_world;
 uniform int voxel_steps;
 uniform float voxel_bias;  // voxels at each end
 
-// Texels and slices; both are linear along a way but for the division by clip.w.
-struct VoxelPlace {
-  vec3 clip;  // x, y, w: texel = (x, y) / w
-  float slice;
+// Where something is among voxels: x, y, w and slice, texel = (x, y) / w. Linear along a way.
+vec4 voxel_place(vec4 world) {
+  vec4 clip = voxel_clip_from_world * world;
+  float size = float(textureSize(voxel_bits, 0).x);
+  return vec4((clip.xy + clip.w) * (0.5 * size), clip.w, dot(voxel_slice_from_world, world));
+}
+
+// An end of a way: on a surface, off it by the bias along its normal, and how much of the way is left out there [m].
+// In a corner the other wall's voxels are as near as the own, so it is both.
+struct VoxelEnd {
+  vec3 world;
+  vec4 place, off;
+  float left_out_m;
 };
 
-VoxelPlace voxel_place(vec3 world) {
-  vec4 clip = voxel_clip_from_world * vec4(world, 1.0);
-  float size = float(textureSize(voxel_bits, 0).x);
-  return VoxelPlace(vec3((clip.xy + clip.w) * (0.5 * size), clip.w),
-                    dot(voxel_slice_from_world.xyz, world) + voxel_slice_from_world.w);
-}
-
-// Length of a voxel at a place, its longer edge [m]. @param d  unit.
-float voxel_m(vec3 world) {
-  VoxelPlace here = voxel_place(world);
+VoxelEnd voxel_end(vec3 world, vec3 normal) {
+  VoxelEnd end;
+  end.world = world;
+  end.place = voxel_place(vec4(world, 1.0));
+  // Longer edge of a voxel there.
   float slice_m = 1.0 / length(voxel_slice_from_world.xyz);
   vec3 across = vec3(voxel_clip_from_world[0].x, voxel_clip_from_world[1].x, voxel_clip_from_world[2].x);
-  float texel_m = 2.0 * max(here.clip.z, 1e-6) / (length(across) * float(textureSize(voxel_bits, 0).x));
-  return max(slice_m, texel_m);
+  float texel_m = 2.0 * max(end.place.z, 1e-6) / (length(across) * float(textureSize(voxel_bits, 0).x));
+  float bias_m = voxel_bias * max(slice_m, texel_m);
+  end.off = bias_m * voxel_place(vec4(normal, 0.0));
+  end.left_out_m = 0.5 * bias_m;
+  return end;
 }
 
+ivec2 voxel_texel(vec4 place) { return ivec2(floor(place.xy / place.z)); }
+
 // Slices of a texel in [from, to].
-bool any_voxel(ivec2 texel, float from, float to) {
-  int last_slice = 32 * textureSize(voxel_bits, 0).z - 1;
+bool any_voxel(usampler2DArray voxels, ivec2 texel, float from, float to) {
+  int last_slice = 32 * textureSize(voxels, 0).z - 1;
   int first = clamp(int(floor(min(from, to))), 0, last_slice), last = clamp(int(floor(max(from, to))), 0, last_slice);
   bool hit = false;
   for (int word = first >> 5; word <= last >> 5; ++word) {
     int low = max(first - 32 * word, 0), high = min(last - 32 * word, 31);
     uint bits = (0xffffffffu >> uint(31 - high)) & (0xffffffffu << uint(low));
-    hit = hit || (texelFetch(voxel_bits, ivec3(texel, word), 0).r & bits) != 0u;
+    hit = hit || (texelFetch(voxels, ivec3(texel, word), 0).r & bits) != 0u;
   }
   return hit;
 }
 
-// Even samples along the way, each of all slices up to halfway to the next ones (Nichols 2010, section 5.3.3.1): as
-// many as it crosses texels or slices. Off both surfaces by the bias, along their normals and along the way: in a
-// corner the other wall's voxels are as near as the own.
-bool voxels_hide(vec3 from, vec3 normal, vec3 to, vec3 to_normal) {
-  vec3 d = normalize(to - from);
-  VoxelPlace a = voxel_place(from + (normal + 0.5 * d) * (voxel_bias * voxel_m(from)));
-  VoxelPlace b = voxel_place(to + (to_normal - 0.5 * d) * (voxel_bias * voxel_m(to)));
+// Even samples along a way, each of all slices up to halfway to the next ones (Nichols 2010, section 5.3.3.1): as many
+// as it crosses texels or slices.
+struct VoxelWay {
+  vec4 from, to;
+  int steps;
+};
+
+// False: nothing is known of it.
+bool voxel_way(VoxelEnd from, VoxelEnd to, out VoxelWay way) {
+  vec4 along = (to.place - from.place) / distance(from.world, to.world);
+  way.from = from.place + from.off + from.left_out_m * along;
+  way.to = to.place + to.off - to.left_out_m * along;
+  way.steps = 0;
   float nearest_w = 1e-4;
-  if (a.clip.z < nearest_w) return false;
+  if (way.from.z < nearest_w) return false;
   // Behind the camera nothing is known.
-  float known = b.clip.z < nearest_w ? (a.clip.z - nearest_w) / (a.clip.z - b.clip.z) : 1.0;
-  vec3 end_clip = mix(a.clip, b.clip, known);
-  float end_slice = mix(a.slice, b.slice, known);
-  vec2 texels = abs(end_clip.xy / end_clip.z - a.clip.xy / a.clip.z);
-  int steps = clamp(int(ceil(max(max(texels.x, texels.y), 0.5 * abs(end_slice - a.slice)))), 1, voxel_steps);
+  if (way.to.z < nearest_w) way.to = mix(way.from, way.to, (way.from.z - nearest_w) / (way.from.z - way.to.z));
+  vec2 texels = abs(way.to.xy / way.to.z - way.from.xy / way.from.z);
+  float most = max(max(texels.x, texels.y), 0.5 * abs(way.to.w - way.from.w));
+  way.steps = clamp(int(ceil(most)), 1, voxel_steps);
+  return true;
+}
+
+// The first sample from `first` on that meets a voxel, or way.steps. Of VOXEL_RUN samples that lie in as many texels
+// one look says whether any can.
+int first_voxel(VoxelWay way, int first) {
   ivec2 size = textureSize(voxel_bits, 0).xy;
-  float half_step = 0.5 * (end_slice - a.slice) / float(steps);
-  for (int k = 0; k < steps; ++k) {
-    float t = (float(k) + 0.5) / float(steps);
-    vec3 clip = mix(a.clip, end_clip, t);
-    float slice = mix(a.slice, end_slice, t);
-    ivec2 texel = ivec2(floor(clip.xy / clip.z));
-    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) continue;
-    if (any_voxel(texel, slice - half_step, slice + half_step)) return true;
+  vec4 by = (way.to - way.from) / float(way.steps);
+  float half_step = 0.5 * by.w;
+  for (int run = first; run < way.steps; run += VOXEL_RUN) {
+    int end = min(run + VOXEL_RUN, way.steps);
+    vec4 a = way.from + (float(run) + 0.5) * by, b = way.from + (float(end) - 0.5) * by;
+    ivec2 texel_a = voxel_texel(a), texel_b = voxel_texel(b), low = min(texel_a, texel_b);
+    bool one_look = all(lessThan(abs(texel_a - texel_b), ivec2(VOXEL_RUN)));
+    if (one_look && !any_voxel(voxel_wide, clamp(low, ivec2(0), size - 1), a.w - half_step, b.w + half_step)) continue;
+    for (int k = run; k < end; ++k) {
+      vec4 place = way.from + (float(k) + 0.5) * by;
+      ivec2 texel = voxel_texel(place);
+      if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) continue;
+      if (any_voxel(voxel_bits, texel, place.w - half_step, place.w + half_step)) return k;
+    }
   }
-  return false;
+  return way.steps;
+}
+
+bool voxels_hide(VoxelEnd from, VoxelEnd to) {
+  VoxelWay way;
+  return voxel_way(from, to, way) && first_voxel(way, 0) < way.steps;
 }
 
 #endif

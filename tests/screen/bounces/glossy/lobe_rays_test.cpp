@@ -116,6 +116,14 @@ TEST_F(LobeRays, AFloorBesideALampAsTraced) {
   expect_as_traced(beside_a_lamp(0.4f), LightPart::full, 12.0);
 }
 
+// A Phong lobe of exponent 20, which is roughness 0.395.
+TEST_F(LobeRays, APhongFloorBesideALampAsTraced) {
+  Scene scene = beside_a_lamp(std::pow(2.0f * 20.0f + 1.0f, -0.25f));
+  for (Material& m : scene.materials) m.phong = true;
+  expect_as_traced(scene, LightPart::direct, 12.0);
+  expect_as_traced(scene, LightPart::full, 12.0);
+}
+
 TEST_F(LobeRays, WhatIsNarrowerIsWidenedAndSaidSo) {
   const Rendered r = seen(beside_a_lamp(0.05f), options(2));
   EXPECT_EQ(r.report.number("glossy_widened_share"), 1.0);
