@@ -104,9 +104,9 @@ TEST(Ranks, OrdinatesBitEqualToOne) {
   for (const char* name : {"cornell", "room"}) {
     const Scene scene = data_scene(name);
     VolumeOptions options;
-    options.grid_cells = 64;
+    options.grid_cells = name == std::string("cornell") ? 64 : 40;
     const Answer one = answer_of(scene, options, 1);
-    EXPECT_GT(one.sides.size(), 10000u);
+    EXPECT_GT(one.sides.size(), 5000u);
     EXPECT_TRUE(one.report.conjugate_gradients);
     for (int ranks : {2, 3, 4, 8})
       expect_same(one, answer_of(scene, options, ranks), fmt::format("{}, {}", name, ranks));
@@ -153,11 +153,11 @@ TEST(Ranks, ConservativeBitEqualToOne) {
     VolumeOptions options;
     options.scheme.scheme = Scheme::conservative;
     options.scheme.coarse_start = false;
-    options.grid_cells = 36;
+    options.grid_cells = 28;
     options.bounces = 1;
     const Answer one = answer_of(scene, options, 1);
     EXPECT_GT(one.report.passes, 50);
-    for (const int ranks : {2, 3, 8})
+    for (const int ranks : {3, 8})
       expect_same(one, answer_of(scene, options, ranks), fmt::format("{}, {}", name, ranks));
   }
 }
