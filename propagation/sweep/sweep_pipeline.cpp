@@ -9,16 +9,20 @@ namespace volgi {
 
 namespace {
 
-// Of several ranks. Two blocks of 16 cells: a task of a 64^3 part takes a millisecond, a hundred times what a message
-// does, and the last rank of a row of P starts after P of them (docs/results/mpi.md).
-constexpr int kChunkBlocks = 2;
+constexpr int kMostChunkBlocks = 2;  // of several ranks: more would keep those downwind waiting
 
 bool flows_up(int octant, int axis) { return ((octant >> axis) & 1) != 0; }
 
 }  // namespace
 
+/// As wide as a chunk may be without its planes, two through y and two through z, being more to keep than what waits
+/// for the next chunk, a face for each row. The same for all ranks: by the largest part.
 int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& part) {
-  return std::max(1, ranks == nullptr ? part.size().x : std::min(kChunkBlocks, part.size().x));
+  if (ranks == nullptr) return std::max(1, part.size().x);
+  const glm::ivec2 along = ranks->decomposition.along_yz();
+  const glm::ivec3 blocks = ranks->decomposition.blocks();
+  const int y = (blocks.y + along.x - 1) / along.x, z = (blocks.z + along.y - 1) / along.y;
+  return std::clamp(y * z / (2 * (y + z)), 1, std::min(kMostChunkBlocks, blocks.x));
 }
 
 SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats)
