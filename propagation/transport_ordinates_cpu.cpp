@@ -95,6 +95,14 @@ sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float ce
   return c;
 }
 
+/// Of the light between the blocks of one octant.
+size_t flow_bytes(glm::ivec3 blocks, size_t face_floats) {
+  return size_t(blocks.x) * size_t(blocks.y + blocks.z) * (face_floats * sizeof(float) + 1);
+}
+
+/// Octants that are swept at the same time, or one.
+size_t flow_count(size_t bytes_of_one, size_t many) { return 8 * bytes_of_one > many ? 1 : 8; }
+
 bool any_light(const float* values, size_t count) {
   for (size_t i = 0; i < count; i += 32) {
     std::uint32_t bits[32];
@@ -176,12 +184,13 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
 }
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
-                                             const sweep::Kernels* kernels)
+                                             const sweep::Kernels* kernels, size_t many_flows)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
       constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)) {
   const glm::ivec3 n = voxels.blocks();
+  flows_.resize(flow_count(flow_bytes(n, face_floats()), many_flows));
   for (Flow& flow : flows_) {
     flow.y_lit.resize(size_t(n.x) * size_t(n.z));
     flow.z_lit.resize(size_t(n.x) * size_t(n.y));
@@ -252,7 +261,7 @@ void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
 
 /// Planes of an octant's flow before its sweep: those across y and z of all rows.
 void OrdinatesTransportCpu::fill_rim(int octant) {
-  Flow& flow = flows_[size_t(octant)];
+  Flow& flow = flow_of(octant);
   const auto fill = [&](Floats& plane, std::vector<unsigned char>& lit, int axis) {
     std::fill(lit.begin(), lit.end(), static_cast<unsigned char>(1));
     for (size_t face = 0; face < lit.size(); ++face)
@@ -267,9 +276,13 @@ bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_pas
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
   // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
-  const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
-  tbb::parallel_for(
-      0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
+  if (flows_.size() == 8) {
+    const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
+    tbb::parallel_for(
+        0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
+  } else {
+    for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, nullptr);
+  }
   tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
     for (size_t i = sides.begin(); i < sides.end(); ++i) {
       glm::vec4* a = &arrived_[4 * i];
@@ -294,7 +307,7 @@ RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) 
 /// Rows of blocks along x, by (y,z) along the flow; those of one diagonal y + z do not depend on each other.
 void OrdinatesTransportCpu::sweep_octant(int octant, bool threaded, RadianceLeaves* leaves) {
   const glm::ivec3 n = voxels_.blocks();
-  Flow& flow = flows_[size_t(octant)];
+  Flow& flow = flow_of(octant);
   std::fill(flow.y_lit.begin(), flow.y_lit.end(), static_cast<unsigned char>(0));
   std::fill(flow.z_lit.begin(), flow.z_lit.end(), static_cast<unsigned char>(0));
   if (streams_in_) fill_rim(octant);
@@ -316,7 +329,7 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
   const glm::ivec3 n = voxels_.blocks();
   const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
   const size_t face = face_floats();
-  Flow& flow = flows_[size_t(octant)];
+  Flow& flow = flow_of(octant);
   alignas(64) float x_carried[sweep::kBlockFace * sweep::kMaxLanes];
   unsigned char x_lit = streams_in_ ? 1 : 0;
   if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
@@ -356,11 +369,10 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
 
 size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
   const glm::ivec3 n = leaf_blocks(grid);
-  const size_t flows = 8 * size_t(n.x) * size_t(n.y + n.z);
+  const size_t flow = flow_bytes(n, face_floats(octets_of(choice.directions / 8)));
   return sizeof(OrdinatesTransportCpu) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
          size_t(n.x) * size_t(n.y) * size_t(n.z) * sizeof(int) +
-         expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) +
-         flows * (face_floats(octets_of(choice.directions / 8)) * sizeof(float) + 1);
+         expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) + flow_count(flow, kManyFlows) * flow;
 }
 
 size_t OrdinatesTransportCpu::bytes() const {

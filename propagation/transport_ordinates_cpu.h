@@ -19,13 +19,17 @@ namespace volgi {
 /// is skipped; rows of cells without sides run through a loop of three (step) or nine (SC1) multiplications a lane.
 /// Values below 2^-126 W count as zero. Cost of an order: one visit of each cell that light reaches per octant. Threads
 /// take octants, and diagonals of rows of blocks where that is not even; every sum has a fixed order.
-/// Memory: two planes of the grid per octant (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a
-/// few to fill registers), 84 bytes a side, 2.2 KiB a block with sides. Twin: transport_ordinates_gl.cpp.
+/// Memory: two planes of the grid (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a few to fill
+/// registers) per octant, or, where eight would take more than kManyFlows, once: octants then take turns, with the same
+/// answer; 84 bytes a side, 2.2 KiB a block with sides, 4 bytes a block. Twin: transport_ordinates_gl.cpp.
 class OrdinatesTransportCpu : public TransportCpu {
  public:
-  /// @param kernels  null: the fastest that this machine can run.
+  static constexpr size_t kManyFlows = size_t(128) << 20;  // bytes
+
+  /// @param kernels  null: the fastest that this machine can run. @param many_flows  for tests, in place of kManyFlows.
   /// @throws Error(usage) as ordinate_set.
-  OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr);
+  OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
+                        size_t many_flows = kManyFlows);
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
@@ -50,6 +54,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   struct RadianceLeaves;
 
   void pack_sides();
+  Flow& flow_of(int octant) { return flows_[flows_.size() == 8 ? size_t(octant) : 0]; }
   void make_inflow(const Sky& sky);
   void fill_rim(int octant);
   void sweep_octant(int octant, bool threaded, RadianceLeaves* leaves);
@@ -61,7 +66,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   OrdinateChoice choice_;
   sweep::Kernels kernels_;
   sweep::Constants constants_;
-  std::array<Flow, 8> flows_;
+  std::vector<Flow> flows_;  // of each octant, or of the one whose turn it is
   /// What blocks at the rim find where light comes in, by octant and axis: one row of lanes.
   std::array<std::array<Floats, 3>, 8> inflow_;
   std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from

@@ -89,6 +89,14 @@ void VolumeCpu::scene_moved() {
   moved_ = true;
 }
 
+void VolumeCpu::shift_grid(glm::vec3 cells) {
+  if (cells == options_.grid_shift_cells) return;
+  options_.grid_shift_cells = cells;
+  grid_ = make_grid(scene_, options_.grid_cells, cells, options_.grid_box);
+  cells_ = {};
+  shifted_ = true;
+}
+
 VolumeCpu::~VolumeCpu() = default;
 
 bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
@@ -103,7 +111,7 @@ void VolumeCpu::voxelize() {
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);
   if (moved && !papers) cells_ = {};  // made on first use
-  const bool only_sides_count = !moved || !(coarse || papers);
+  const bool only_sides_count = (!moved || !(coarse || papers)) && !std::exchange(shifted_, false);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "shaders/shared/side.shared.h"
@@ -19,7 +20,8 @@ constexpr int kFine = 3;  // lines to a cell, on an edge
 /// for such a line has no other.
 class FaceMarks {
  public:
-  FaceMarks(const Grid& grid, int axis) : grid_(grid), axis_(axis), met_(size_t(shared::face_count(grid, axis)), 0) {}
+  FaceMarks(const Grid& grid, int axis)
+      : grid_(grid), axis_(axis), blocks_(grid.cells / kLeafCells + 1), met_(block_volume(blocks_)) {}
 
   /// All lines of the family that meet the triangle (cell coordinates).
   void mark(const std::array<glm::dvec3, 3>& t) {
@@ -42,20 +44,35 @@ class FaceMarks {
   }
   /// @param blocks  with sides, by block_index: those of the marked faces' cells become true.
   void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
-    for (int face = 0; face < int(met_.size()); ++face) {
-      if (met_[size_t(face)] == 0) continue;
-      ++sum.faces;
-      glm::ivec3 cell = shared::face_coord(grid_, axis_, face);
-      if (met_[size_t(face)] != CENTRE && beside_a_centre(cell)) continue;
-      for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
-        if (!shared::cell_inside(grid_, cell)) continue;
-        ++sum.sides;
-        blocks[size_t(block_index(leaf_blocks(grid_), cell / kLeafCells))] = true;
+    for (int block = 0; block < int(met_.size()); ++block) {
+      if (met_[size_t(block)] == nullptr) continue;
+      const glm::ivec3 first = kLeafCells * block_coord(blocks_, block);
+      for (int place = 0; place < int(kLeafVolume); ++place) {
+        const char met = (*met_[size_t(block)])[size_t(place)];
+        if (met != 0) count(met, first + glm::ivec3(place >> 6, place >> 3 & 7, place & 7), sum, blocks);
       }
     }
   }
 
  private:
+  using Block = std::array<char, kLeafVolume>;  // by leaf_offset
+
+  static size_t block_volume(glm::ivec3 blocks) { return size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z); }
+
+  void count(char met, glm::ivec3 cell, ExpectedSides& sum, std::vector<bool>& blocks) const {
+    ++sum.faces;
+    if (met != CENTRE && beside_a_centre(cell)) return;
+    for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
+      if (!shared::cell_inside(grid_, cell)) continue;
+      ++sum.sides;
+      blocks[size_t(block_index(leaf_blocks(grid_), cell / kLeafCells))] = true;
+    }
+  }
+  char met_at(glm::ivec3 place) const {
+    const auto& block = met_[size_t(block_index(blocks_, place / kLeafCells))];
+    return block == nullptr ? char(0) : (*block)[size_t(leaf_offset(place))];
+  }
+
   struct Range {
     double low = 1e30, high = -1e30;
   };
@@ -88,7 +105,9 @@ class FaceMarks {
     place[axis_] = int(face);
     place[shared::axis_b(axis_)] = line_b / kFine;
     place[shared::axis_c(axis_)] = line_c / kFine;
-    char& met = met_[size_t(shared::face_index(grid_, axis_, place))];
+    auto& block = met_[size_t(block_index(blocks_, place / kLeafCells))];
+    if (block == nullptr) block = std::make_unique<Block>();
+    char& met = (*block)[size_t(leaf_offset(place))];
     met = std::max(met, line_b % kFine == kFine / 2 && line_c % kFine == kFine / 2 ? CENTRE : ASIDE);
   }
   /// Whether the line between centres meets a surface at this face's place one face on or back, or beside it.
@@ -101,7 +120,7 @@ class FaceMarks {
       at[axis_] += k / 9 - 1;
       const bool inside = at[b] >= 0 && at[b] < grid_.cells[b] && at[c] >= 0 && at[c] < grid_.cells[c] &&
                           at[axis_] >= 0 && at[axis_] <= grid_.cells[axis_];
-      if (inside && met_[size_t(shared::face_index(grid_, axis_, at))] == CENTRE) return true;
+      if (inside && met_at(at) == CENTRE) return true;
     }
     return false;
   }
@@ -109,7 +128,8 @@ class FaceMarks {
   const Grid& grid_;
   int axis_;
   static constexpr char ASIDE = 1, CENTRE = 2;  // by which lines
-  std::vector<char> met_;
+  glm::ivec3 blocks_;                           // of faces, which belong to their upper cell
+  std::vector<std::unique_ptr<Block>> met_;
 };
 
 }  // namespace
