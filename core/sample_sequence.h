@@ -37,4 +37,11 @@ inline glm::dvec2 pixel_shift(std::uint64_t k) {
   return glm::fract(0.5 + double(k) * step) - 0.5;
 }
 
+/// By how much of a cell the grid of picture k is moved on each axis, in [-1/2, 1/2)³. An additive recurrence (Roberts
+/// 2018: powers of 1/1.2207..., the root of x⁴ = x + 1) that begins at 0; it goes with no other choice.
+inline glm::dvec3 grid_shift(std::uint64_t k) {
+  constexpr glm::dvec3 step(0.8191725133961645, 0.6710436067037893, 0.5497004779019703);
+  return glm::fract(0.5 + double(k) * step) - 0.5;
+}
+
 }  // namespace volgi

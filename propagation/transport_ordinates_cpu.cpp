@@ -178,12 +178,13 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
 }
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
-                                             const sweep::Kernels* kernels, const RanksOfVolume* ranks)
+                                             const sweep::Kernels* kernels, const RanksOfVolume* ranks,
+                                             size_t many_flows)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
       constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)),
-      pipeline_(ranks, voxels.part(), face_floats()) {
+      pipeline_(ranks, voxels.part(), face_floats(), many_flows) {
   pack_sides();
 }
 
@@ -279,7 +280,7 @@ RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) 
 /// shared out.
 void OrdinatesTransportCpu::sweep(bool in_order, RadianceLeaves* leaves) {
   const auto threads = size_t(tbb::this_task_arena::max_concurrency());
-  const size_t at_once = in_order ? 1 : pipeline_.alone() ? 8 : threads;
+  const size_t at_once = pipeline_.alone() ? 8 : threads;
   pipeline_.start(in_order);
   for (auto tasks = pipeline_.next(at_once); !tasks.empty(); tasks = pipeline_.next(at_once)) {
     const bool threaded = tasks.size() % threads != 0;

@@ -20,16 +20,19 @@ namespace volgi {
 /// is skipped; rows of cells without sides run through a loop of three (step) or nine (SC1) multiplications a lane.
 /// Values below 2^-126 W count as zero. Cost of an order: one visit of each cell that light reaches per octant. Threads
 /// take octants, and diagonals of rows of blocks where that is not even; every sum has a fixed order.
-/// Memory: two planes of the grid per octant (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a
-/// few to fill registers), 84 bytes a side, 2.2 KiB a block with sides. Twin: transport_ordinates_gl.cpp.
+/// Memory: two planes of the grid (4 bytes x lanes a cell of them, 3 lanes a direction of an octant and a few to fill
+/// registers) per octant, or, where eight would take more than SweepPipeline::kManyFlows, once: octants then take
+/// turns, with the same answer (several ranks: sweep/sweep_pipeline.h); 84 bytes a side, 2.2 KiB a block with sides, 4
+/// bytes a block. Twin: transport_ordinates_gl.cpp.
 class OrdinatesTransportCpu : public TransportCpu {
  public:
   /// @param kernels  null: the fastest that this machine can run.
   /// @param ranks    that the voxels are parts of, which then do all together; null: there is one. No result depends
   ///                 on their number (sweep/sweep_pipeline.h).
+  /// @param many_flows  for tests, in place of kManyFlows.
   /// @throws Error(usage) as ordinate_set.
   OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
-                        const RanksOfVolume* ranks = nullptr);
+                        const RanksOfVolume* ranks = nullptr, size_t many_flows = SweepPipeline::kManyFlows);
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;

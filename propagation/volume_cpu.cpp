@@ -109,6 +109,15 @@ void VolumeCpu::scene_moved() {
   moved_ = true;
 }
 
+void VolumeCpu::shift_grid(glm::vec3 cells) {
+  if (cells == options_.grid_shift_cells) return;
+  options_.grid_shift_cells = cells;
+  grid_ = make_grid(scene_, options_.grid_cells, cells, options_.grid_box);
+  if (ranks_) ranks_->decomposition = Decomposition(leaf_blocks(grid_), ranks_->ranks.count());
+  cells_ = {};
+  shifted_ = true;
+}
+
 VolumeCpu::~VolumeCpu() = default;
 
 bool VolumeCpu::has_coarse_part() const { return !ranks_ && volgi::has_coarse_part(options_.scheme, grid_); }
@@ -123,7 +132,7 @@ void VolumeCpu::voxelize() {
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);
   if (moved && !papers) cells_ = {};  // made on first use
-  const bool only_sides_count = !moved || !(coarse || papers);
+  const bool only_sides_count = (!moved || !(coarse || papers)) && !std::exchange(shifted_, false);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
   if (ranks_) halo_.emplace(*ranks_, voxels_);

@@ -28,6 +28,10 @@ class VolumeCpu {
   /// The scene has moved within the same grid, in place. Materials, textures and images must be the same.
   void scene_moved();
 
+  /// From the next voxelize() on the grid lies there (VolumeOptions::grid_shift_cells): of pictures that are averaged
+  /// each sees the scene in other cells, so that what hangs on where surfaces lie in cells is averaged as well.
+  void shift_grid(glm::vec3 cells);
+
   /// Where propagate() keeps its state and goes on from (BouncesCpu::set_checkpoint); must outlive this. Schemes that
   /// carry sides.
   void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
@@ -73,7 +77,7 @@ class VolumeCpu {
   BounceReport report_;
   size_t pocket_cells_ = 0;
   BounceCheckpoint* checkpoint_ = nullptr;
-  bool moved_ = false;  // since the last voxelization
+  bool moved_ = false, shifted_ = false;  // since the last voxelization
 };
 
 /// Memory that a volume on the CPU is going to take [bytes], VolumeCpu::bytes() after a run, for what is said and

@@ -45,6 +45,9 @@ const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
 }
 
 void refuse_on_gpu(const VolumeOptions& o) {
+  if (o.grid_cells > VolumeOptions::kMaxDenseGridCells)
+    throw Error(ExitCode::over_limit, fmt::format("--grid {}: the GPU takes {} cells along an axis; use --backend cpu",
+                                                  o.grid_cells, VolumeOptions::kMaxDenseGridCells));
   if (o.voxelization.method == VoxelizationMethod::single_pass && o.voxelization.interleave)
     throw Error(ExitCode::usage, "voxel.interleave=1 takes turns at axes, which voxel.method=single_pass has not");
   if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
@@ -56,6 +59,11 @@ void refuse_on_cpu(const VolumeOptions& o) {
   if (o.voxelization.method != VoxelizationMethod::sliced || o.voxelization.interleave)
     throw Error(ExitCode::usage,
                 "voxel.method=single_pass, voxel.interleave=1: the CPU slices along three axes; use --backend gpu");
+  if (o.scheme.scheme != Scheme::ordinates && o.grid_cells > VolumeOptions::kMaxDenseGridCells)
+    throw Error(ExitCode::over_limit,
+                fmt::format("--grid {}: more than {} cells along an axis are for --scheme ordinates, the others keep "
+                            "light in every cell",
+                            o.grid_cells, VolumeOptions::kMaxDenseGridCells));
 }
 
 void refuse_of_ranks(const VolumeOptions& o) {

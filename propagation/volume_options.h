@@ -14,14 +14,17 @@ namespace volgi {
 
 /// Options of a volume, on either backend.
 struct VolumeOptions {
-  int grid_cells = 32;               // along the longest axis, 1 ... 256
+  int grid_cells = 32;               // along the longest axis, 1 ... kMaxGridCells
   glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
+  bool grid_jitter = false;          // of pictures that are averaged each has its grid elsewhere; on the CPU
   std::optional<GridBox> grid_box;   // what the grid lies around; none: the scene
   SchemeOptions scheme;
   VoxelizationOptions voxelization;  // on the GPU
   std::optional<int> bounces;        // BounceRules
   std::optional<int> iterations;     // BounceRules; of the papers' schemes, kPulseIterations unless given
   BounceRules::Solver solver = BounceRules::Solver::automatic;
+  std::optional<int>
+      side_rays;  // of virtual lights, on the CPU (light_in/reflected_flux_cpu.h); none: automatic_rays()
   bool warm_start = false;
   std::optional<int> passes_per_run;
   /// What the flux that it is given stands for. lights: what lit and emissive surfaces send, and it carries all of the
@@ -32,7 +35,10 @@ struct VolumeOptions {
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 
-  static constexpr int kMaxGridCells = 256;
+  static constexpr int kMaxGridCells = 1024;
+  /// Of the GPU, where which faces surfaces cross is decided in double precision (shaders/voxel/lattice.glsl), and of
+  /// schemes that keep light in every cell.
+  static constexpr int kMaxDenseGridCells = 256;
   static constexpr int kPulseIterations = 64;  // Gaitatzes 2010, table 1, "room"
 };
 
@@ -45,7 +51,8 @@ BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene);
 /// has it. Null: none.
 const Sky* streaming_sky(const Scene& scene, const VolumeOptions& options);
 
-/// @throws Error(usage) for what the other backend alone can do, and for what neither can.
+/// @throws Error(usage) for what the other backend alone can do, and for what neither can; Error(over_limit) for more
+/// cells than it takes.
 void refuse_on_gpu(const VolumeOptions& options);
 void refuse_on_cpu(const VolumeOptions& options);
 /// @throws Error(usage) for what several ranks cannot do together.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "shaders/shared/side.shared.h"
@@ -28,7 +29,8 @@ class FaceMarks {
         first_(glm::max(first_cell_ - 1, 0)),
         size_(glm::max(glm::min(last_cell_ + 1, grid.cells) - first_, 0)) {
     ++size_[axis];
-    met_.resize(size_t(size_.x) * size_t(size_.y) * size_t(size_.z), 0);
+    of_faces_ = {first_ / kLeafCells, (first_ + size_ - 1) / kLeafCells + 1};
+    met_.resize(of_faces_.count());
   }
 
   /// All lines of the family that meet the triangle (cell coordinates).
@@ -52,22 +54,33 @@ class FaceMarks {
   }
   /// @param blocks  with sides: those of the marked faces' cells become true.
   void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
-    for (size_t face = 0; face < met_.size(); ++face) {
-      if (met_[face] == 0) continue;
-      ++sum.faces;
-      const size_t row = face / size_t(size_.x);
-      glm::ivec3 cell =
-          first_ + glm::ivec3(int(face % size_t(size_.x)), int(row % size_t(size_.y)), int(row / size_t(size_.y)));
-      if (met_[face] != CENTRE && beside_a_centre(cell)) continue;
-      for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
-        if (glm::any(glm::lessThan(cell, first_cell_)) || glm::any(glm::greaterThanEqual(cell, last_cell_))) continue;
-        ++sum.sides;
-        blocks[blocks_.index(cell / kLeafCells)] = true;
+    for (size_t block = 0; block < met_.size(); ++block) {
+      if (met_[block] == nullptr) continue;
+      const glm::ivec3 first = kLeafCells * of_faces_.block(block);
+      for (int place = 0; place < int(kLeafVolume); ++place) {
+        const char met = (*met_[block])[size_t(place)];
+        if (met != 0) count(met, first + glm::ivec3(place >> 6, place >> 3 & 7, place & 7), sum, blocks);
       }
     }
   }
 
  private:
+  using Block = std::array<char, kLeafVolume>;  // by leaf_offset
+
+  void count(char met, glm::ivec3 cell, ExpectedSides& sum, std::vector<bool>& blocks) const {
+    ++sum.faces;
+    if (met != CENTRE && beside_a_centre(cell)) return;
+    for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
+      if (glm::any(glm::lessThan(cell, first_cell_)) || glm::any(glm::greaterThanEqual(cell, last_cell_))) continue;
+      ++sum.sides;
+      blocks[blocks_.index(cell / kLeafCells)] = true;
+    }
+  }
+  char met_at(glm::ivec3 place) const {
+    const auto& block = met_[of_faces_.index(place / kLeafCells)];
+    return block == nullptr ? char(0) : (*block)[size_t(leaf_offset(place))];
+  }
+
   struct Range {
     double low = 1e30, high = -1e30;
   };
@@ -102,7 +115,9 @@ class FaceMarks {
     place[shared::axis_b(axis_)] = line_b / kFine;
     place[shared::axis_c(axis_)] = line_c / kFine;
     if (!has(place)) return;
-    char& met = met_[index(place)];
+    auto& block = met_[of_faces_.index(place / kLeafCells)];
+    if (block == nullptr) block = std::make_unique<Block>();
+    char& met = (*block)[size_t(leaf_offset(place))];
     met = std::max(met, line_b % kFine == kFine / 2 && line_c % kFine == kFine / 2 ? CENTRE : ASIDE);
   }
   /// Whether the line between centres meets a surface at this face's place one face on or back, or beside it.
@@ -113,7 +128,7 @@ class FaceMarks {
       at[b] += k % 3 - 1;
       at[c] += k / 3 % 3 - 1;
       at[axis_] += k / 9 - 1;
-      if (has(at) && met_[index(at)] == CENTRE) return true;
+      if (has(at) && met_at(at) == CENTRE) return true;
     }
     return false;
   }
@@ -121,18 +136,15 @@ class FaceMarks {
   bool has(glm::ivec3 face) const {
     return glm::all(glm::greaterThanEqual(face, first_)) && glm::all(glm::lessThan(face, first_ + size_));
   }
-  size_t index(glm::ivec3 face) const {
-    const glm::ivec3 at = face - first_;
-    return size_t(at.x) + size_t(size_.x) * (size_t(at.y) + size_t(size_.y) * size_t(at.z));
-  }
 
   const Grid& grid_;
   int axis_;
   BlockBox blocks_;
   glm::ivec3 first_cell_, last_cell_;           // that are asked for
   glm::ivec3 first_, size_;                     // faces that are looked at: one more all around
+  BlockBox of_faces_;                           // which belong to their upper cell
   static constexpr char ASIDE = 1, CENTRE = 2;  // by which lines
-  std::vector<char> met_;
+  std::vector<std::unique_ptr<Block>> met_;
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ struct ExpectedSides {
 
 /// Marks the faces that the scene's triangles cross on the lines through the middles of thirds of cells, which is where
 /// both voxelizations look. Materials are not looked at: what alpha cuts away is counted.
-/// Cost: a step for each crossing, nine a face; memory: three bits a cell, and a bit a block.
+/// Cost: a step for each crossing, nine a face; memory: half a KiB a block of 8^3 cells with
+/// surfaces, 8 bytes a block.
 ExpectedSides expected_sides(const Scene& scene, const Grid& grid);
 /// Of these blocks alone.
 ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& blocks);

@@ -10,6 +10,9 @@ namespace volgi::slicing {
 
 namespace {
 
+// Above, columns of bits of all cells that are held (SideColumns) take more than sides do, and searches go without.
+constexpr size_t kManyCells = size_t(1) << 24;
+
 constexpr float kAreaUnit = 1048576.0f;  // of h^2; sums of integers do not depend on the order of threads
 
 // How far from their block records count, in cells: they may be a cell outside, and a search reaches three to the
@@ -30,16 +33,18 @@ inline void set_point(glm::vec3& point, int axis, const glm::ivec3& cell, int su
 
 class AreaCounter {
  public:
-  AreaCounter(const SlicedScene& s, const VoxelGrid& voxels)
-      : s_(s), voxels_(voxels), columns_(voxels), fixed_(voxels.sides().size()) {}
+  AreaCounter(const SlicedScene& s, const VoxelGrid& voxels) : s_(s), voxels_(voxels), fixed_(voxels.sides().size()) {
+    if (kLeafVolume * voxels.held().count() <= kManyCells) columns_.emplace(voxels);
+  }
 
   /// Never at the same time for blocks that may count for the same sides: between the others are two blocks.
-  void add(const std::vector<AreaRecord>& records) {
+  /// @param first_cell  of the records' block.
+  void add(const std::vector<AreaRecord>& records, glm::ivec3 first_cell) {
     for (size_t first = 0, last = 0; first < records.size(); first = last) {
       const SliceTriangle& t = s_.triangles[records[first].triangle];
-      const SideSearch search(voxels_, &columns_, t.normal, 1, true);
+      const SideSearch search(voxels_, columns_ ? &*columns_ : nullptr, t.normal, 1, true);
       for (; last < records.size() && records[last].triangle == records[first].triangle; ++last) {
-        add(records[last], t, search);
+        add(records[last], first_cell + unpack_cell(records[last].cell), t, search);
       }
     }
   }
@@ -48,13 +53,12 @@ class AreaCounter {
 
  private:
   /// `search` is of the record's triangle.
-  void add(const AreaRecord& record, const SliceTriangle& t, const SideSearch& search) {
+  void add(const AreaRecord& record, const glm::ivec3& cell, const SliceTriangle& t, const SideSearch& search) {
     const int axis = t.nearest_axis;
     const std::uint32_t subs = sub_columns(record);
     const int count = int(sub_count(subs));
     const float stopped = float(record.amount >> kStoppedShift) / (kStoppedUnit * float(count));
     const float area = stopped / (float(kFine * kFine) * std::abs(t.normal[axis]));
-    const glm::ivec3 cell = unpack_cell(record.cell);
     glm::vec3 point;
     set_point(point, axis, cell, std::countr_zero(subs), record.depth);
     const SideSearch::Answer found = search.at(point, cell);
@@ -86,7 +90,7 @@ class AreaCounter {
 
   const SlicedScene& s_;
   const VoxelGrid& voxels_;
-  SideColumns columns_;
+  std::optional<SideColumns> columns_;
   std::vector<std::uint32_t> fixed_;
 };
 
@@ -121,7 +125,7 @@ std::vector<std::uint32_t> count_areas(const SlicedScene& s, const BlockTable& t
     const BlockFaces* block = table[at].get();
     // What lies on the grid's upper rim goes with the last blocks.
     const glm::ivec3 of = glm::min(s.window.block(at), leaf_blocks(s.grid) - 1);
-    if (block != nullptr && s.part.contains(of)) counter.add(block->areas);
+    if (block != nullptr && s.part.contains(of)) counter.add(block->areas, s.block_cell(at));
   });
   return std::move(counter).counted();
 }

@@ -53,11 +53,11 @@ class AreaList {
   /// Turns what was counted of a triangle into records.
   void end_triangle(std::uint32_t triangle, int axis) {
     for (std::uint16_t entry : scratch_.touched) {
-      glm::ivec3 cell = first_cell_;
-      cell[shared::axis_b(axis)] += entry % kLeafCells;
-      cell[shared::axis_c(axis)] += entry / kLeafCells % kLeafCells;
+      glm::ivec3 cell(0);  // from the first
+      cell[shared::axis_b(axis)] = entry % kLeafCells;
+      cell[shared::axis_c(axis)] = entry / kLeafCells % kLeafCells;
       const int layer = entry / (kLeafCells * kLeafCells);
-      cell[axis] += layer - 1;
+      cell[axis] = layer - 1;
       below_[size_t(axis)] |= layer == 0;
       records_.push_back({triangle, pack_cell(cell), scratch_.amount[entry], scratch_.depth[entry]});
       scratch_.amount[entry] = 0;

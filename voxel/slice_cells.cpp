@@ -39,8 +39,8 @@ class TriangleArea {
         material_(s, t, n_, t.nearest_axis, t.may_pass ? kLineFootprint : kFaceFootprint),
         area_of_one_(kUnit / (kFine * kFine * std::abs(double(t.normal[t.nearest_axis])))) {}
 
-  void add(const AreaRecord& record, Cell& to) const {
-    const glm::ivec3 cell = unpack_cell(record.cell);
+  /// @param cell  of the record.
+  void add(const AreaRecord& record, const glm::ivec3& cell, Cell& to) const {
     const int b = cell[shared::axis_b(t_.nearest_axis)], c = cell[shared::axis_c(t_.nearest_axis)];
     const std::uint32_t subs = sub_columns(record);
     if (!t_.may_pass) return add(material_.at_cell(b, c), area_of_one_ * sub_count(subs), to);
@@ -73,8 +73,8 @@ class BlockCells {
       : s_(s), block_(block), cells_(cells) {}
 
   /// Takes those records that are of this block's cells. @param areas  of this block, or of one that is next along an
-  /// axis: its fragments may lie half a cell below it.
-  void add(const std::vector<AreaRecord>& areas);
+  /// axis: its fragments may lie half a cell below it. @param their_block  which block they are of.
+  void add(const std::vector<AreaRecord>& areas, glm::ivec3 their_block);
 
   /// Leaves of the cells with a surface; all null when there is none. The cells are empty afterwards.
   Leaves collect();
@@ -85,16 +85,17 @@ class BlockCells {
   std::array<Cell, kBlockCells>& cells_;
 };
 
-void BlockCells::add(const std::vector<AreaRecord>& areas) {
+void BlockCells::add(const std::vector<AreaRecord>& areas, glm::ivec3 their_block) {
   std::uint32_t triangle = 0;
   std::optional<TriangleArea> of_triangle;
   for (const AreaRecord& record : areas) {
     // What lies up to half a cell outside belongs to the grid's outermost cells.
-    const glm::ivec3 cell = glm::clamp(unpack_cell(record.cell), glm::ivec3(0), s_.grid.cells - 1);
+    const glm::ivec3 seen = kLeafCells * their_block + unpack_cell(record.cell);
+    const glm::ivec3 cell = glm::clamp(seen, glm::ivec3(0), s_.grid.cells - 1);
     if ((cell >> kLeafShift) != block_) continue;
     if (!of_triangle || record.triangle != triangle) of_triangle.emplace(s_, s_.triangles[record.triangle]);
     triangle = record.triangle;
-    of_triangle->add(record, cells_[size_t(leaf_offset(cell))]);
+    of_triangle->add(record, seen, cells_[size_t(leaf_offset(cell))]);
   }
 }
 
@@ -138,13 +139,13 @@ CellVolumes make_cell_volumes(const SlicedScene& s, const BlockTable& areas) {
     const glm::ivec3 block = s.part.block(i);
     BlockCells cells(s, block, *scratch.local());
     const auto areas_of = [&](glm::ivec3 at) { return areas[s.window.index(at)].get(); };
-    if (const BlockFaces* own = areas_of(block)) cells.add(own->areas);
+    if (const BlockFaces* own = areas_of(block)) cells.add(own->areas, block);
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 above = block;
       if (++above[axis] >= s.window.last[axis]) continue;
       const BlockFaces* there = areas_of(above);
       const bool outside = kLeafCells * above[axis] >= s.grid.cells[axis];
-      if (there != nullptr && (outside || there->areas_below[size_t(axis)])) cells.add(there->areas);
+      if (there != nullptr && (outside || there->areas_below[size_t(axis)])) cells.add(there->areas, above);
     }
     leaves[i] = cells.collect();
   });

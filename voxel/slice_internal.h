@@ -146,7 +146,7 @@ struct FaceRecord {
 /// Fragments of one triangle in one cell, in the pass along the axis nearest to its normal.
 struct AreaRecord {
   std::uint32_t triangle;
-  std::uint32_t cell;    // ten bits an axis, plus 1: fragments may lie half a cell outside the grid
+  std::uint32_t cell;    // pack_cell, from the block's first one: fragments may lie half a cell below it
   std::uint32_t amount;  // bits 0-8 the sub-columns, the rest the sum of what they stop, 2^-16
   float depth;           // of the first of them, cell units
 };
@@ -160,12 +160,10 @@ constexpr auto kSubCounts = [] {
 }();
 inline std::uint32_t sub_columns(const AreaRecord& r) { return r.amount & ((1u << kStoppedShift) - 1); }
 inline std::uint32_t sub_count(std::uint32_t sub_columns) { return kSubCounts[sub_columns]; }
-inline std::uint32_t pack_cell(glm::ivec3 cell) {
-  return std::uint32_t(cell.x + 1) | std::uint32_t(cell.y + 1) << 10 | std::uint32_t(cell.z + 1) << 20;
+inline std::uint32_t pack_cell(glm::ivec3 from_first) {  // -1 ... 8 on each axis
+  return std::uint32_t(from_first.x + 1) | std::uint32_t(from_first.y + 1) << 4 | std::uint32_t(from_first.z + 1) << 8;
 }
-inline glm::ivec3 unpack_cell(std::uint32_t v) {
-  return glm::ivec3(v & 1023u, (v >> 10) & 1023u, (v >> 20) & 1023u) - 1;
-}
+inline glm::ivec3 unpack_cell(std::uint32_t v) { return glm::ivec3(v & 15u, (v >> 4) & 15u, (v >> 8) & 15u) - 1; }
 
 /// One bit for each cell of a block, in the order of leaf_offset: word x, bit 8y + z.
 using BlockMask = std::array<std::uint64_t, 8>;

@@ -10,8 +10,8 @@ namespace volgi::slicing {
 
 namespace {
 
-// Vertices farther than this from the grid's origin, five grids of 256 cells away, are pulled in: 64-bit integers hold
-// all products then. Scenes lie inside their grid.
+// Vertices farther than this from the grid's origin, 1365 cells, are pulled in: 64-bit integers hold all products then.
+// Scenes lie inside their grid, unless it has a box of its own.
 constexpr int kFarthest = 1 << 19;
 constexpr int kFarthestCells = kFarthest / SLICE_STEPS;
 

@@ -13,6 +13,7 @@ namespace volgi {
 /// Blocks of 8^3 cells, the leaves of OpenVDB's trees; a cell's place in its leaf is z fastest, as OpenVDB has it.
 constexpr int kLeafShift = 3;
 constexpr int kLeafCells = 1 << kLeafShift;
+constexpr size_t kLeafVolume = kLeafCells * kLeafCells * kLeafCells;
 inline glm::ivec3 leaf_blocks(const Grid& grid) { return (grid.cells + (kLeafCells - 1)) / kLeafCells; }
 inline int block_index(glm::ivec3 blocks, glm::ivec3 block) {  // x fastest, as cells
   return block.x + blocks.x * (block.y + blocks.y * block.z);

@@ -55,10 +55,9 @@ VoxelGridGl upload(const VoxelGrid& voxels) {
 void upload(const VoxelGrid& voxels, VoxelGridGl& into) {
   const Grid& grid = voxels.grid();
   const size_t cell_bytes = sizeof(glm::uvec2) * cell_count(grid);
-  if (into.grid_block.bytes() == 0 || !same_grid(into.grid, grid)) {
-    into.grid = grid;
-    into.grid_block = gl::Buffer(sizeof(Grid), &grid);
-  }
+  into.grid = grid;
+  if (into.grid_block.bytes() == 0) into.grid_block = gl::Buffer(sizeof(Grid));
+  into.grid_block.upload(&grid, sizeof(Grid));
   if (into.cell_sides.bytes() < cell_bytes) into.cell_sides = gl::Buffer(cell_bytes);
   if (into.side_count.bytes() == 0) into.side_count = gl::Buffer(sizeof(std::uint32_t));
   const auto count = std::uint32_t(voxels.side_count());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "shaders/voxel/white_pockets.shared.h"
@@ -11,16 +12,18 @@ namespace volgi {
 
 namespace {
 
-/// Bands in which light leaves each cell in the end, spread from those where it does at once.
+/// Bands in which light leaves each cell in the end, spread from those where it does at once. The cells of a block
+/// without sides are all open to each other, and have one answer.
 class Leaving {
  public:
   Leaving(const VoxelGrid& voxels, const RanksOfVolume* ranks)
       : voxels_(voxels),
         first_(kLeafCells * voxels.part().first),
         last_(glm::min(kLeafCells * voxels.part().last, voxels.grid().cells)),
-        held_first_(kLeafCells * voxels.held().first),
-        held_size_(kLeafCells * voxels.held().size()),
-        bands_(512 * voxels.held().count(), 0) {
+        blocks_(voxels.held().count()) {
+    for (size_t b = 0; b < blocks_.size(); ++b) {
+      if (voxels.leaf(voxels.held().block(b)) != nullptr) blocks_[b].cells = std::make_unique<Cells>();
+    }
     for (size_t i = 0; i < voxels.side_count(); ++i) {
       const shared::Side& side = voxels.sides()[i];
       add(shared::cell_coord(voxels.grid(), side.cell), shared::bands_below_white(side.albedo));
@@ -30,12 +33,15 @@ class Leaving {
       while (!changed_.empty()) spread(pop());
     } while (ranks != nullptr && told_others(*ranks));
   }
-  std::uint32_t bands(int cell) const { return bands_[index(shared::cell_coord(voxels_.grid(), cell))]; }
+  std::uint32_t bands(glm::ivec3 cell) const {
+    const Block& block = blocks_[block_of(cell)];
+    return block.cells ? (*block.cells)[size_t(leaf_offset(cell))] : block.all;
+  }
   size_t cells_without_some() const {
     size_t count = 0;
     for (glm::ivec3 c = first_; c.z < last_.z; ++c.z) {
       for (c.y = first_.y; c.y < last_.y; ++c.y) {
-        for (c.x = first_.x; c.x < last_.x; ++c.x) count += bands_[index(c)] != ALL_BANDS;
+        for (c.x = first_.x; c.x < last_.x; ++c.x) count += bands(c) != ALL_BANDS;
       }
     }
     return count;
@@ -46,11 +52,13 @@ class Leaving {
     glm::ivec3 cell;
     std::uint32_t bands;
   };
+  using Cells = std::array<std::uint8_t, kLeafVolume>;  // by leaf_offset
+  struct Block {
+    std::uint8_t all = 0;          // of a block without sides
+    std::unique_ptr<Cells> cells;  // of one with sides
+  };
 
-  size_t index(glm::ivec3 cell) const {
-    const glm::ivec3 c = cell - held_first_;
-    return size_t(c.x) + size_t(held_size_.x) * (size_t(c.y) + size_t(held_size_.y) * size_t(c.z));
-  }
+  size_t block_of(glm::ivec3 cell) const { return voxels_.held().index(cell >> kLeafShift); }
   bool is_own(glm::ivec3 cell) const {
     return glm::all(glm::greaterThanEqual(cell, first_)) && glm::all(glm::lessThan(cell, last_));
   }
@@ -75,11 +83,17 @@ class Leaving {
     ranks.ranks.add(count);
     return count[0] > 0;
   }
+  /// What reaches a cell: its neighbours, or the rank that has it, are still to be told.
   void add(glm::ivec3 cell, std::uint32_t bands) {
-    std::uint8_t& own = bands_[index(cell)];
+    Block& block = blocks_[block_of(cell)];
+    std::uint8_t& own = block.cells ? (*block.cells)[size_t(leaf_offset(cell))] : block.all;
     if ((bands & ~own) == 0) return;
     own = std::uint8_t(own | bands);
-    changed_.push_back(cell);
+    if (is_own(cell)) {
+      changed_.push_back(cell);
+    } else {
+      to_tell_.push_back({cell, bands});
+    }
   }
   glm::ivec3 pop() {
     const glm::ivec3 last = changed_.back();
@@ -87,26 +101,34 @@ class Leaving {
     return last;
   }
   void spread(glm::ivec3 cell) {
+    if (!blocks_[block_of(cell)].cells) return spread_block(cell >> kLeafShift << kLeafShift, bands(cell));
     const glm::uvec2 sides = voxels_.cell_sides(cell);
-    const std::uint32_t own = bands_[index(cell)];
+    const std::uint32_t own = bands(cell);
     for (int face = 0; face < 6; ++face) {
       const glm::ivec3 next = cell + shared::face_step(face);
-      if (!shared::cell_inside(voxels_.grid(), next) || shared::is_opaque(sides, face)) continue;
-      if (is_own(next)) {
-        add(next, own);
-      } else if ((own & ~std::uint32_t(bands_[index(next)])) != 0) {
-        bands_[index(next)] = std::uint8_t(bands_[index(next)] | own);  // told once
-        to_tell_.push_back({next, own});
+      if (shared::cell_inside(voxels_.grid(), next) && !shared::is_opaque(sides, face)) add(next, own);
+    }
+  }
+
+  /// To the cells around a block without sides.
+  void spread_block(glm::ivec3 first, std::uint32_t bands) {
+    const glm::ivec3 end = glm::min(first + kLeafCells, voxels_.grid().cells);
+    for (int face = 0; face < 6; ++face) {
+      const int axis = shared::face_axis(face), b = shared::axis_b(axis), c = shared::axis_c(axis);
+      glm::ivec3 next = first;
+      next[axis] = shared::face_sign(face) < 0 ? first[axis] - 1 : end[axis];
+      if (!shared::cell_inside(voxels_.grid(), next)) continue;
+      for (next[b] = first[b]; next[b] < end[b]; ++next[b]) {
+        for (next[c] = first[c]; next[c] < end[c]; ++next[c]) add(next, bands);
       }
     }
   }
 
   const VoxelGrid& voxels_;
-  glm::ivec3 first_, last_;  // cells of the part
-  glm::ivec3 held_first_, held_size_;
-  std::vector<std::uint8_t> bands_;  // of every cell that is held
+  glm::ivec3 first_, last_;          // cells of the part
+  std::vector<Block> blocks_;        // that are held
   std::vector<Told> to_tell_;        // to other ranks
-  std::vector<glm::ivec3> changed_;  // whose neighbours have not been told
+  std::vector<glm::ivec3> changed_;  // whose neighbours have not been told; any cell of a block without sides
 };
 
 }  // namespace
@@ -116,7 +138,7 @@ size_t bound_white_pockets(VoxelGrid& voxels, const RanksOfVolume* ranks) {
   for (size_t i = 0; i < voxels.side_count(); ++i) {
     shared::Side& side = voxels.mutable_sides()[i];
     for (int band = 0; band < 3; ++band) {
-      if ((leaving.bands(side.cell) >> band & 1u) == 0)
+      if ((leaving.bands(shared::cell_coord(voxels.grid(), side.cell)) >> band & 1u) == 0)
         side.albedo[band] = std::min(side.albedo[band], MAX_POCKET_ALBEDO);
     }
   }

@@ -168,7 +168,7 @@ void Picture::begin_overlays(const screen::ViewTarget::Overlays& overlays, const
 void Picture::show_sides(const screen::Frame& frame, const Camera& camera, screen::VoxelView::Mode mode,
                          const ViewDetails& details, const Settings& settings, gl::PassTimer& timer) {
   const auto* volume = frame.products().find<screen::FrameVolume>();
-  if (volume == nullptr) return;
+  if (volume == nullptr || !volume->sides_on_gpu()) return;
   begin_overlays({.gbuffer = &frame.gbuffer(), .slack_m = sides_slack_m(*volume), .brightness = details.dim}, camera,
                  timer);
   voxel_view_.run(volume->voxels(), volume->direct_irradiance(), volume->indirect_irradiance(), camera,

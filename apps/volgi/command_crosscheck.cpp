@@ -54,6 +54,7 @@ void print_table(const std::vector<CrosscheckRow>& rows) {
 int CrosscheckCommand::run() const {
   volume.limit_threads();
   const VolumeOptions options = volume.volume_options();
+  refuse_on_gpu(options);
   const Scene scene = load_scene(scene_path, 0.0, file.reading);
   const gl::Context context(device.context);
   const std::vector<CrosscheckRow> rows = crosscheck(scene, options, passes);

@@ -25,8 +25,12 @@ int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& p
   return std::clamp(y * z / (2 * (y + z)), 1, std::min(kMostChunkBlocks, blocks.x));
 }
 
-SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats)
-    : ranks_(ranks), size_(part.size()), face_floats_(face_floats), chunk_blocks_(chunk_blocks_of(ranks, part)) {
+SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, size_t many_flows)
+    : ranks_(ranks),
+      size_(part.size()),
+      face_floats_(face_floats),
+      chunk_blocks_(chunk_blocks_of(ranks, part)),
+      in_turn_(take_turns(ranks, octant_bytes(ranks, part, face_floats), many_flows)) {
   chunks_ = (size_.x + chunk_blocks_ - 1) / chunk_blocks_;
   for (int octant = 0; octant < 8; ++octant) {
     for (int axis = 1; axis <= 2; ++axis) {
@@ -37,6 +41,7 @@ SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, s
         flow.from = ranks->decomposition.beside(ranks->ranks.rank(), axis, -up);
         flow.to = ranks->decomposition.beside(ranks->ranks.rank(), axis, up);
       }
+      if (in_turn_ && octant > 0) continue;
       for (size_t i = 0; i < (flow.beside() ? 2u : 1u); ++i)
         flow.planes[i].resize(header_bytes(flow.faces) + flow.faces * face_floats_ * sizeof(float));
     }
@@ -47,7 +52,7 @@ SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, s
 }
 
 void SweepPipeline::start(bool in_order) {
-  in_order_ = in_order;
+  in_order_ = in_order || in_turn_;
   done_ = {};
   for (auto& octant : flows_) {
     for (Flow& flow : octant) flow.come = 0;
@@ -55,7 +60,7 @@ void SweepPipeline::start(bool in_order) {
 }
 
 SweepPipeline::Plane SweepPipeline::plane(Task task, int axis) {
-  Flow& flow = flows_[size_t(task.octant)][size_t(axis - 1)];
+  Flow& flow = flows_[in_turn_ ? 0 : size_t(task.octant)][size_t(axis - 1)];
   std::byte* bytes = flow.planes[flow.place(task.chunk)].data();
   return {reinterpret_cast<unsigned char*>(bytes), reinterpret_cast<float*>(bytes + header_bytes(flow.faces)),
           flow.faces};
@@ -197,7 +202,7 @@ void SweepPipeline::end() {
   }
 }
 
-size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+size_t SweepPipeline::octant_bytes(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
   const int chunk_blocks = chunk_blocks_of(ranks, part);
   const bool several_chunks = part.size().x > chunk_blocks;
   size_t bytes = 0;
@@ -207,7 +212,12 @@ size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part
     bytes += (beside ? 2 : 1) * (header_bytes(faces) + faces * face_floats * sizeof(float));
   }
   if (several_chunks) bytes += size_t(part.size().y) * size_t(part.size().z) * (face_floats * sizeof(float) + 1);
-  return 8 * bytes;
+  return bytes;
+}
+
+size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+  const size_t bytes = octant_bytes(ranks, part, face_floats);
+  return (take_turns(ranks, bytes, kManyFlows) ? 1 : 8) * bytes;
 }
 
 size_t SweepPipeline::bytes() const {

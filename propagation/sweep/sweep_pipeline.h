@@ -11,7 +11,8 @@
 namespace volgi {
 
 /// What the sweeps of a part of a grid do when: the octants' ways through it in chunks of blocks along x, each as soon
-/// as the parts upwind have handed on what comes in. One rank alone has eight tasks, an octant each, all at once.
+/// as the parts upwind have handed on what comes in. One rank alone has eight tasks, an octant each: all at once, or
+/// one by one in the same planes where those of eight would take more than kManyFlows.
 ///
 /// The KBA algorithm (Koch, Baker and Alcouffe 1992): a rank has columns of blocks along x; for each chunk of them it
 /// waits for the outflow of the ranks before it along y and z, sweeps, and hands its own on at once. All four corners
@@ -20,9 +21,9 @@ namespace volgi {
 /// et al. 2013 have the least number of stages there can be). Octants depend on nothing of each other, so the order
 /// changes no number.
 ///
-/// Memory: of every octant what goes through y and z in a chunk, twice where it comes from or goes to another rank, and
-/// where there is more than one chunk what waits for the next one, a face for each row of blocks. Messages hold the
-/// faces that light goes through, and a byte each.
+/// Memory: of every octant, or of the one whose turn it is, what goes through y and z in a chunk, twice where it comes
+/// from or goes to another rank, and where there is more than one chunk what waits for the next one, a face for each
+/// row of blocks. Messages hold the faces that light goes through, and a byte each.
 class SweepPipeline {
  public:
   struct Task {
@@ -35,13 +36,16 @@ class SweepPipeline {
     size_t faces;
   };
 
-  /// @param ranks  null: there is one. @param face_floats  of a block's face.
-  SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats);
+  static constexpr size_t kManyFlows = size_t(128) << 20;  // bytes
+
+  /// @param ranks  null: there is one. @param face_floats  of a block's face. @param many_flows  for tests, in place of
+  /// kManyFlows.
+  SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, size_t many_flows = kManyFlows);
 
   int chunks() const { return chunks_; }
   int chunk_blocks() const { return chunk_blocks_; }
   bool alone() const { return ranks_ == nullptr; }
-  /// All ranks: a new sweep of all octants. @param in_order  one octant after the other.
+  /// All ranks: a new sweep of all octants. @param in_order  one octant after the other, also where they need not.
   void start(bool in_order);
   /// Tasks that can be done now, `most` of them; waits until there is one. None: all are done.
   std::vector<Task> next(size_t most);
@@ -82,6 +86,11 @@ class SweepPipeline {
   };
   static size_t header_bytes(size_t faces) { return (faces + 63) / 64 * 64; }
   static int chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& part);
+  static size_t octant_bytes(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats);
+  /// Whether octants take turns in the planes of one.
+  static bool take_turns(const RanksOfVolume* ranks, size_t bytes_of_octant, size_t many_flows) {
+    return ranks == nullptr && 8 * bytes_of_octant > many_flows;
+  }
   static size_t faces_of(const BlockBox& part, int chunk_blocks, int axis) {
     return size_t(chunk_blocks) * size_t(part.size()[axis == 1 ? 2 : 1]);
   }
@@ -97,7 +106,8 @@ class SweepPipeline {
   glm::ivec3 size_;  // of the part
   size_t face_floats_;
   int chunk_blocks_, chunks_;
-  std::array<std::array<Flow, 2>, 8> flows_;  // by octant; through y, through z
+  bool in_turn_;
+  std::array<std::array<Flow, 2>, 8> flows_;  // by octant; through y, through z. in_turn_: the first has all planes
   std::array<std::vector<float, tbb::cache_aligned_allocator<float>>, 8> carried_;
   std::array<std::vector<unsigned char>, 8> carried_lit_;
   std::array<int, 8> done_{};  // chunks

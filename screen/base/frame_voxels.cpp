@@ -64,7 +64,10 @@ class VoxelsOnCpu : public FrameVoxels {
 }  // namespace
 
 std::unique_ptr<FrameVoxels> make_frame_voxels(const Scene& scene, const VolumeOptions& options, bool on_gpu) {
-  if (on_gpu) return std::make_unique<VoxelsOnGpu>(scene, options);
+  if (on_gpu) {
+    refuse_on_gpu(options);
+    return std::make_unique<VoxelsOnGpu>(scene, options);
+  }
   return std::make_unique<VoxelsOnCpu>(scene, options);
 }
 

@@ -19,7 +19,7 @@ class FrameVoxels {
   virtual size_t bytes() const = 0;
 };
 
-/// @param scene  must outlive it. @throws Error as make_grid.
+/// @param scene  must outlive it. @throws Error as make_grid, on the GPU as refuse_on_gpu.
 std::unique_ptr<FrameVoxels> make_frame_voxels(const Scene& scene, const VolumeOptions& options, bool on_gpu);
 
 }  // namespace volgi::screen

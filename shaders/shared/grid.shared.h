@@ -68,7 +68,8 @@ SHARED_FUNCTION ivec3 face_coord(Grid grid, int axis, int index) {
 // which cell centres lie behind it can be answered exactly. The answers then are about one surface, and what is closed
 // in the scene is closed in the volume. 384 = 2^7 3: the centres of cells and the nodes of the lattice three times
 // finer, node 3 cell + sub at (2 node + 1) 64 steps, are whole numbers. In a grid of 256 cells coordinates stay under
-// 2^16.7, cross products under 2^34.4 and the terms of a determinant under 2^51.1: exact in double precision.
+// 2^16.7, cross products under 2^34.4 and the terms of a determinant under 2^51.1: exact in double precision. The CPU
+// takes 64-bit integers and is exact to 1024 cells.
 #define SLICE_STEPS 384  // of a cell
 SHARED_FUNCTION ivec3 slice_vertex(vec3 cell) { return ivec3(floor(cell * float(SLICE_STEPS) + 0.5f)); }
 

@@ -16,6 +16,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/volume_scenes.h"
 #include "tests/voxel/white_pocket_scenes.h"
+#include "voxel/voxelize_cpu.h"
 
 namespace volgi::test {
 namespace {
@@ -144,6 +145,32 @@ TEST(Ranks, WhiteMazesAndPlainOrders) {
     options.scheme.directions = 24;
     expect_same(answer_of(scene, options, 1), answer_of(scene, options, 4), pocket.name);
   }
+}
+
+// One rank has more cells than are searched by columns of bits, each of four has fewer.
+TEST(Ranks, AreasOfSidesInALargeGrid) {
+  Scene scene;
+  add_box_inside(scene, add_material(scene, glm::vec3(0.6f)), glm::vec3(0.0f), glm::vec3(1.0f));
+  scene.meshes.erase(scene.meshes.begin() + 1, scene.meshes.end());
+  add_square(scene, 0, glm::vec3(0.1f), glm::vec3(0.5f, 0.7f, 0.6f), 0.3f);
+  update_bounds(scene);
+  const Grid grid = make_grid(scene, 264, glm::vec3(0.0f), GridBox{glm::vec3(-1.0f), glm::vec3(1.0f)});
+  const Mipmaps mipmaps = voxelization_mipmaps(scene);
+  std::map<std::pair<int, int>, shared::Side> one, many;
+  std::mutex mutex;
+  const auto take = [&mutex](const VoxelGrid& voxels, auto& into) {
+    const std::lock_guard lock(mutex);
+    for (size_t i = 0; i < voxels.side_count(); ++i)
+      into.insert({{voxels.sides()[i].cell, voxels.sides()[i].face}, voxels.sides()[i]});
+  };
+  take(voxelize_cpu(scene, grid, mipmaps), one);
+  run_ranks_in_threads(4, [&](const Ranks& ranks) {
+    take(voxelize_cpu(scene, grid, mipmaps, {ranks, Decomposition(leaf_blocks(grid), 4)}), many);
+  });
+  EXPECT_GT(cell_count(grid), size_t(1) << 24);
+  EXPECT_GT(one.size(), 70000u);
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first && same_bits(a.second, b.second); };
+  EXPECT_TRUE(std::equal(one.begin(), one.end(), many.begin(), many.end(), same));
 }
 
 // Passes over a volume whose parts show each other their outermost cells after each.

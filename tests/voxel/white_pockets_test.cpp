@@ -11,7 +11,7 @@ namespace {
 
 TEST(WhitePockets, AreWhatNoLightLeaves) {
   for (const PocketScene& of : pocket_scenes()) {
-    for (const int cells : {13, 24}) {
+    for (const int cells : {13, 24, 70}) {
       SCOPED_TRACE(of.name + ", " + std::to_string(cells) + " cells");
       const VoxelGrid before = voxelize_cpu(of.scene, make_grid(of.scene, cells, glm::vec3(0.0f)));
       VoxelGrid after = before;

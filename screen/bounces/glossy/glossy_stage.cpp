@@ -51,6 +51,10 @@ class GlossyStage : public Stage {
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& volume = frame.get<FrameVolume>();
+    if (!volume.sides_on_gpu())
+      throw Error(ExitCode::over_limit,
+                  "lobes of what shines need the volume's sides on the GPU, and these are more than fit into its "
+                  "buffers; use a smaller --grid, or --set glossy.rays=0");
     sides_.run(volume, frame.shadow_maps, timer);
     const float rotation_rad = frame.scene.sky ? frame.scene.sky->rotation_rad() : 0.0f;
     rays_.run(frame.gbuffer, frame.camera,

@@ -32,6 +32,8 @@ class FrameVolume {
   /// Virtual lights are there, what is seen of them is not yet: a copy to the host may begin.
   virtual void lights_ready(const VirtualLightListGl& /*lights*/, const VirtualLightSubdivision* /*subdivision*/,
                             gl::PassTimer& /*timer*/) {}
+  /// Of pictures that are averaged (core/sample_sequence.h), the one that run() is for.
+  virtual void set_sample(int /*index*/) {}
   /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce starts from, else null.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
                    const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
@@ -47,6 +49,8 @@ class FrameVolume {
   /// Of the last run. Irradiance is by side, vec4 [W m^-2], `direct` of emission's arrival; null where the scheme has
   /// no sides (the papers').
   virtual const VoxelGridGl& voxels() const = 0;
+  /// False where they are too many for buffers of the GPU: voxels() is a grid alone, and there are no values of sides.
+  virtual bool sides_on_gpu() const { return true; }
   virtual const gl::Buffer* direct_irradiance() const { return nullptr; }
   virtual const gl::Buffer* indirect_irradiance() const { return nullptr; }
   /// Of the last run: flux A B0 per side, vec4 [W], that sides reflect of the light that comes in, before any
@@ -59,9 +63,9 @@ class FrameVolume {
   virtual SentFlux light_in() const { return {}; }
   /// Radiance in free space of what sides sent in the last run, in all orders; on the CPU, with what streams in from a
   /// sky. Light that the screen carries, as the first bounce of `hybrid`, is not in it. Null while an order may be
-  /// under way that the next run goes on with. Made when it is first asked for after a run, and kept until the next,
-  /// between frames: it makes GL objects and may wait for the GPU. Cost: a pass over the volume and more; 64 or 144
-  /// bytes a cell.
+  /// under way that the next run goes on with, and where sides are not on the GPU. Made when it is first asked for
+  /// after a run, and kept until the next, between frames: it makes GL objects and may wait for the GPU. Cost: a pass
+  /// over the volume and more; 64 or 144 bytes a cell.
   virtual const RadianceVolumeGl* radiance(gl::PassTimer& timer) const = 0;
   /// Waits for the GPU; after a frame, not in one.
   virtual VolumeReport report() const = 0;

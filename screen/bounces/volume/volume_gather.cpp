@@ -1,8 +1,13 @@
 #include "screen/bounces/volume/volume_gather.h"
 
+#include <tbb/parallel_for.h>
+
 #include <array>
+#include <glm/gtc/constants.hpp>
 
 #include "core/gl/raster_state.h"
+#include "core/octahedral.h"
+#include "propagation/pixel_irradiance_cpu.h"
 #include "shaders/propagation/slots.shared.h"
 #include "shaders/screen/base/slots.shared.h"
 #include "shaders/screen/bounces/volume/slots.shared.h"
@@ -20,8 +25,7 @@ VolumeGather::VolumeGather(glm::ivec2 size)
 void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Volume& volume, const SmoothGather* with,
                        gl::PassTimer& timer) {
   volume_ = &volume;
-  const bool perspective = camera.kind == Camera::Kind::perspective;
-  viewer_ = perspective ? camera.world_from_camera[3] : camera.world_from_camera[2];
+  look_from(camera);
   if (with == nullptr) {
     draw(gbuffer, timer);
   } else {
@@ -29,6 +33,39 @@ void VolumeGather::run(const GBuffer& gbuffer, const Camera& camera, const Volum
     with->pixels.run(gbuffer, lights, timer);
   }
   volume_ = nullptr;
+}
+
+void VolumeGather::look_from(const Camera& camera) {
+  const bool perspective = camera.kind == Camera::Kind::perspective;
+  viewer_ = perspective ? camera.world_from_camera[3] : camera.world_from_camera[2];
+}
+
+void VolumeGather::run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VoxelGrid& voxels,
+                              const SideIrradiance& irradiance, const SmoothGather* with, gl::PassTimer& timer) {
+  if (with != nullptr) {
+    const std::array<SmoothLight*, 1> first{&with->first};
+    with->pixels.run(gbuffer, first, timer);
+  }
+  const auto scope = timer.scope(name);
+  look_from(camera);
+  const std::vector<float> positions = gbuffer.position().download(4), normals = gbuffer.normals().download(4),
+                           albedos = gbuffer.albedo().download(4);
+  const size_t pixels = positions.size() / 4;
+  std::vector<glm::vec4> direct(pixels, glm::vec4(0.0f)), indirect = direct;
+  tbb::parallel_for(size_t(0), pixels, [&](size_t i) {
+    if (positions[4 * i + 3] == 0.0f) return;
+    const glm::vec3 position(positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]);
+    const glm::vec3 normal = octahedral_decode(glm::vec2(normals[4 * i + 2], normals[4 * i + 3]));  // geometric
+    const PixelIrradiance e = irradiance_at_pixel(voxels, irradiance, position, normal, viewer_);
+    if (e.weight == 0.0f) return;
+    const glm::vec3 reflectance =
+        glm::vec3(albedos[4 * i], albedos[4 * i + 1], albedos[4 * i + 2]) * glm::one_over_pi<float>();
+    direct[i] = glm::vec4(reflectance * e.direct, 1.0f);
+    indirect[i] = glm::vec4(reflectance * e.indirect, 1.0f);
+  });
+  const glm::ivec2 size = direct_.size();
+  glTextureSubImage2D(direct_.id(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, direct.data());
+  glTextureSubImage2D(indirect_.id(), 0, 0, 0, size.x, size.y, GL_RGBA, GL_FLOAT, indirect.data());
 }
 
 void VolumeGather::bind_volume(const gl::Program& program) const {

@@ -5,6 +5,7 @@
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
+#include "propagation/bounces_cpu.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/named_texture.h"
 #include "screen/base/smooth_pixels.h"
@@ -30,6 +31,10 @@ class VolumeGather : private SmoothLight {
   /// @param with  other smooth light, gathered together with this at the pixels that need it; null: every pixel.
   void run(const GBuffer& gbuffer, const Camera& camera, const Volume& volume, const SmoothGather* with,
            gl::PassTimer& timer);
+  /// The same of every pixel on the CPU (propagation/pixel_irradiance_cpu.h), for sides that are too many for buffers
+  /// of the GPU; other smooth light is gathered by itself. Waits for the G-buffer.
+  void run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VoxelGrid& voxels,
+                  const SideIrradiance& irradiance, const SmoothGather* with, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]
@@ -45,6 +50,7 @@ class VolumeGather : private SmoothLight {
   void gather(const WorkList& list, int /*step_px*/, std::span<const gl::Texture> irradiance,
               gl::PassTimer& timer) override;
   void draw(const GBuffer& gbuffer, gl::PassTimer& timer);
+  void look_from(const Camera& camera);
   void bind_volume(const gl::Program& program) const;
 
   gl::Texture direct_, indirect_;

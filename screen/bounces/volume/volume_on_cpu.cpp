@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/gl/readback.h"
+#include "core/sample_sequence.h"
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/light_in/reflected_flux_cpu.h"
 #include "propagation/light_in/side_sky_cpu.h"
@@ -97,10 +98,17 @@ void upload_radiance(const RadianceVolume& radiance, const RadianceVolumeGl& int
   for (size_t k = 0; k < radiance.sh.size(); ++k) upload_cells(*radiance.sh[k], nullptr, into.grid, int(k), into.sh);
 }
 
+/// Cells and sides in buffers as large as every OpenGL lets shaders see. Larger grids pixels are read from on the CPU.
+bool fit_on_gpu(const Grid& grid, size_t sides) {
+  constexpr size_t LEAST = size_t(128) << 20;  // GL_MAX_SHADER_STORAGE_BLOCK_SIZE, at least
+  return 8 * cell_count(grid) <= LEAST && sizeof(shared::Side) * sides <= LEAST;
+}
+
 size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
 
 /// FrameVolume::follow_scene.
 bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume) {
+  volume.shift_grid(options.grid_shift_cells);
   if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box), volume.grid()))
     return false;
   volume.scene_moved();
@@ -136,10 +144,20 @@ class SidesOnCpu : public FrameVolume {
     lights_.begin(lights, subdivision);
   }
 
+  void set_sample(int index) override {
+    const glm::dvec3 shift = options_.grid_jitter ? grid_shift(std::uint64_t(index)) : glm::dvec3(0.0);
+    volume_.shift_grid(options_.grid_shift_cells + glm::vec3(shift));
+  }
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
     radiance_is_new_ = false;
     run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
+    if (!sides_on_gpu()) {
+      voxels_.grid = volume_.grid();
+      gather_.run_on_cpu(gbuffer, camera, volume_.voxels(), volume_.irradiance(),
+                         first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
+      return;
+    }
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       upload(volume_.voxels(), voxels_);
@@ -160,16 +178,18 @@ class SidesOnCpu : public FrameVolume {
   const gl::Texture& indirect() const override { return gather_.indirect(); }
   void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
   const VoxelGridGl& voxels() const override { return voxels_; }
-  const gl::Buffer* direct_irradiance() const override { return &direct_; }
-  const gl::Buffer* indirect_irradiance() const override { return &indirect_; }
+  bool sides_on_gpu() const override { return fit_on_gpu(volume_.grid(), volume_.voxels().side_count()); }
+  const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
+  const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
   SentFlux light_in() const override {
+    if (!sides_on_gpu()) return {};
     const SideFlux& flux = volume_.flux();
     upload_values(flux.punctual, punctual_flux_);
     upload_values(flux.emitted, emitted_flux_);
     return {flux.punctual.empty() ? nullptr : &punctual_flux_, flux.emitted.empty() ? nullptr : &emitted_flux_};
   }
   const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
-    if (options_.passes_per_run) return nullptr;
+    if (options_.passes_per_run || !sides_on_gpu()) return nullptr;
     if (radiance_is_new_) return &radiance_;
     const auto scope = timer.scope("screen/bounces/volume/radiance");
     const RadianceVolume radiance = volume_.radiance();
@@ -202,7 +222,9 @@ class SidesOnCpu : public FrameVolume {
     const VirtualLightsForSides& lights =
         lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->sample);
     const bool apart = first_is_apart();
-    SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart);
+    std::optional<size_t> rays;
+    if (options_.side_rays) rays = size_t(*options_.side_rays);
+    SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart, rays);
     if (const SkyMaps* sky = first_bounce->sky)
       add_sky(voxels, sky_.irradiance(voxels, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart,
               flux);
@@ -290,8 +312,10 @@ class PulseOnCpu : public FrameVolume {
 size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
   const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
   const ExpectedSides expected = expected_sides(scene, grid);
+  const bool fits = fit_on_gpu(grid, expected.sides);
   const size_t uploaded = sizeof(Grid) + 8 * cell_count(grid) + sizeof(shared::Side) * expected.sides;
-  const size_t bytes = bytes_expected_cpu(scene, grid, options, expected) + uploaded;
+  const size_t bytes = bytes_expected_cpu(scene, grid, options, expected) + (fits ? uploaded : 0);
+  if (carries_sides(options.scheme.scheme) && !fits) return bytes + VolumeGather::bytes_for(size);
   if (carries_sides(options.scheme.scheme))
     return bytes + 2 * with_headroom(sizeof(glm::vec4) * expected.sides) + VolumeGather::bytes_for(size);
   const int coefficients = options.scheme.sh_order == 2 ? 9 : 4;

@@ -31,6 +31,7 @@ void wait_for_nodes() { glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT); }
 LightTree::LightTree(float zone)
     : zone_(zone),
       assign_(gl::Program::compute("screen/gather/multires/light_tree_assign.comp.glsl")),
+      counts_program_(gl::Program::compute("screen/gather/multires/light_tree_counts.comp.glsl")),
       roots_program_(gl::Program::compute("screen/gather/multires/light_tree_roots.comp.glsl")),
       leaves_program_(gl::Program::compute("screen/gather/multires/light_tree_leaves.comp.glsl")),
       level_program_(gl::Program::compute("screen/gather/multires/light_tree_level.comp.glsl")) {}
@@ -71,11 +72,15 @@ void LightTree::run(const VirtualLightListGl& lights, const VirtualLightSubdivis
   (in_parts_ ? parts->sublights() : nodes_).bind_storage(TREE_SUBLIGHTS_SLOT);
   leaf_clusters_.bind_storage(TREE_LEAF_CLUSTERS_SLOT);
   chunk_counts_.bind_storage(TREE_CHUNK_COUNTS_SLOT);
-  for (const gl::Program* program : {&assign_, &roots_program_, &leaves_program_, &level_program_}) set_shape(*program);
+  for (const gl::Program* program : {&assign_, &counts_program_, &roots_program_, &leaves_program_, &level_program_})
+    set_shape(*program);
 
   assign_.set("scene_diagonal_m", std::max(scene_diagonal_m, 1e-30f));
   assign_.use();
   gl::dispatch_linear(size_t(leaves_), kLeavesPerChunk);
+  wait_for_nodes();
+  counts_program_.use();
+  gl::dispatch_linear(size_t(clusters_), LINEAR_GROUP);
   wait_for_nodes();
   roots_program_.use();
   gl::dispatch({1, 1, 1}, {1, 1, 1});

@@ -50,7 +50,7 @@ class LightTree {
   gl::Buffer nodes_;
   gl::Texture node_texels_;  // a view of them
   gl::Buffer roots_, leaf_clusters_, chunk_counts_;
-  gl::Program assign_, roots_program_, leaves_program_, level_program_;
+  gl::Program assign_, counts_program_, roots_program_, leaves_program_, level_program_;
 };
 
 }  // namespace volgi::screen

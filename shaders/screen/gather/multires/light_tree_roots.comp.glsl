@@ -1,6 +1,5 @@
 #version 450 core
-// Where every cluster's leaves of every chunk go, and how many topmost nodes each cluster has: as many as hold its
-// leaves, cluster after cluster.
+// Where every cluster's topmost nodes begin, from how many it has: as many as hold its leaves, cluster after cluster.
 #include "screen/gather/multires/light_leaves.glsl"
 
 #define THREADS 64
@@ -12,19 +11,8 @@ void main() {
   int t = int(gl_LocalInvocationIndex);
   int each = (cluster_count + THREADS - 1) / THREADS;
   int first = min(t * each, cluster_count), end = min(first + each, cluster_count);
-  int chunks = (leaf_count + LEAVES_PER_CHUNK - 1) / LEAVES_PER_CHUNK;
-  int per_root = 1 << (2 * top_level);
   int own = 0;
-  for (int k = first; k < end; ++k) {
-    int leaves = 0;
-    for (int c = 0; c < chunks; ++c) {
-      int here = chunk_counts[c * cluster_count + k];
-      chunk_counts[c * cluster_count + k] = leaves;
-      leaves += here;
-    }
-    first_root[k] = (leaves + per_root - 1) / per_root;
-    own += first_root[k];
-  }
+  for (int k = first; k < end; ++k) own += first_root[k];
   before[t] = own;
   barrier();
   int sum = 0;
