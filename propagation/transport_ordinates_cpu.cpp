@@ -77,12 +77,18 @@ std::vector<Lane> lanes_of(int directions) {
   return lanes;
 }
 
-sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float cell_size_m) {
+constexpr size_t kBatch = 16;  // directions of an octant
+
+size_t directions_in(const OrdinateSet& set, size_t batch) {
+  return std::min(kBatch, set.directions.size() - batch * kBatch);
+}
+
+sweep::Constants make_constants(const OrdinateSet& set, size_t batch, Ordinates rule, float cell_size_m) {
   sweep::Constants c;
-  const int directions = int(set.directions.size());
+  const int directions = int(directions_in(set, batch));
   c.octets = octets_of(directions);
   assert(c.octets <= sweep::kMaxOctets);
-  for (const Lane& l : lanes_of(directions)) set_lane(c, l.lane, set, l.direction, rule, cell_size_m);
+  for (const Lane& l : lanes_of(directions)) set_lane(c, l.lane, set, batch * kBatch + l.direction, rule, cell_size_m);
   const int in_quads = std::min(directions, 2 * c.octets);
   // Two directions more in the fourth lanes of three octets, one band each.
   for (int d = in_quads; d < directions; ++d) {
@@ -185,10 +191,10 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
                                              const sweep::Kernels* kernels, size_t many_flows)
-    : voxels_(voxels),
-      choice_(choice),
-      kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
-      constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)) {
+    : voxels_(voxels), choice_(choice), kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]) {
+  const OrdinateSet set = ordinate_set(choice.directions);
+  for (size_t b = 0; b * kBatch < set.directions.size(); ++b)
+    batches_.push_back(make_constants(set, b, choice.rule, voxels.grid().cell_size_m));
   const glm::ivec3 n = voxels.blocks();
   flows_.resize(flow_count(flow_bytes(n, face_floats()), many_flows));
   for (Flow& flow : flows_) {
@@ -248,13 +254,17 @@ void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
   const OrdinateSet set = ordinate_set(choice_.directions);
   const size_t n = set.directions.size();
   const std::vector<glm::vec3> flux = rim_inflow(sky, set);
-  for (size_t octant = 0; octant < 8; ++octant) {
-    for (Floats& lanes : inflow_[octant]) lanes.assign(sweep::kMaxLanes, 0.0f);
-    for (const Lane& l : lanes_of(int(n))) {
-      glm::vec3 handed =
-          inflow_per_flux(set, l.direction, voxels_.grid().cell_size_m) * flux[octant * n + l.direction][l.band];
-      if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[l.direction]).share[0];
-      for (int axis = 0; axis < 3; ++axis) inflow_[octant][size_t(axis)][size_t(l.lane)] = handed[axis];
+  inflow_.resize(batches_.size());
+  for (size_t batch = 0; batch < batches_.size(); ++batch) {
+    for (size_t octant = 0; octant < 8; ++octant) {
+      std::array<Floats, 3>& by_axis = inflow_[batch][octant];
+      for (Floats& lanes : by_axis) lanes.assign(sweep::kMaxLanes, 0.0f);
+      for (const Lane& l : lanes_of(int(directions_in(set, batch)))) {
+        const size_t d = batch * kBatch + l.direction;
+        glm::vec3 handed = inflow_per_flux(set, d, voxels_.grid().cell_size_m) * flux[octant * n + d][l.band];
+        if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[d]).share[0];
+        for (int axis = 0; axis < 3; ++axis) by_axis[size_t(axis)][size_t(l.lane)] = handed[axis];
+      }
     }
   }
 }
@@ -265,7 +275,7 @@ void OrdinatesTransportCpu::fill_rim(int octant) {
   const auto fill = [&](Floats& plane, std::vector<unsigned char>& lit, int axis) {
     std::fill(lit.begin(), lit.end(), static_cast<unsigned char>(1));
     for (size_t face = 0; face < lit.size(); ++face)
-      kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][size_t(axis)].data(),
+      kernels_.fill_face(constants().octets, inflow_[batch_][size_t(octant)][size_t(axis)].data(),
                          plane.data() + face * face_floats());
   };
   fill(flow.y, flow.y_lit, 1);
@@ -275,14 +285,24 @@ void OrdinatesTransportCpu::fill_rim(int octant) {
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
-  // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
-  if (flows_.size() == 8) {
-    const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
-    tbb::parallel_for(
-        0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
-  } else {
-    for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, nullptr);
+  for (batch_ = 0; batch_ < batches_.size(); ++batch_) {
+    // Octants do not depend on each other. Where threads share them evenly, rows of blocks need not be shared out.
+    if (flows_.size() == 8) {
+      const bool threaded = 8 % tbb::this_task_arena::max_concurrency() != 0;
+      tbb::parallel_for(
+          0, 8, [&](int octant) { sweep_octant(octant, threaded, nullptr); }, tbb::simple_partitioner());
+    } else {
+      for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, nullptr);
+    }
+    add_arrived(received);
   }
+  batch_ = 0;
+  report.passes += 1;
+  return true;
+}
+
+/// What the octants have brought, times what sides stop of it; leaves nothing behind.
+void OrdinatesTransportCpu::add_arrived(std::span<glm::vec4> received) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
     for (size_t i = sides.begin(); i < sides.end(); ++i) {
       glm::vec4* a = &arrived_[4 * i];
@@ -291,15 +311,16 @@ bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_pas
       std::fill(a, a + 4, glm::vec4(0.0f));
     }
   });
-  report.passes += 1;
-  return true;
 }
 
 RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
   begin(sent);
   RadianceLeaves leaves(voxels_.blocks());
   // Octants add to the same cells: one after the other.
-  for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, &leaves);
+  for (batch_ = 0; batch_ < batches_.size(); ++batch_) {
+    for (int octant = 0; octant < 8; ++octant) sweep_octant(octant, true, &leaves);
+  }
+  batch_ = 0;
   std::fill(arrived_.begin(), arrived_.end(), glm::vec4(0.0f));
   return std::move(leaves).volume(voxels_.grid());
 }
@@ -332,9 +353,9 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
   Flow& flow = flow_of(octant);
   alignas(64) float x_carried[sweep::kBlockFace * sweep::kMaxLanes];
   unsigned char x_lit = streams_in_ ? 1 : 0;
-  if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
+  if (streams_in_) kernels_.fill_face(constants().octets, inflow_[batch_][size_t(octant)][0].data(), x_carried);
   const sweep::Kernel kernel =
-      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);
+      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants().octets, leaves != nullptr);
   for (int x = 0; x < n.x; ++x) {
     const glm::ivec3 along(x, y, z);
     const glm::ivec3 block = positive * along + (1 - positive) * (n - 1 - along);
@@ -360,7 +381,7 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
       b.arrived = &arrived_[4 * first].x;
     }
     if (leaves != nullptr) leaves->attach(b, n, block);
-    kernel(constants_, b);
+    kernel(constants(), b);
     x_lit = any_light(b.x, face) ? 1 : 0;
     y_lit = any_light(b.y, face) ? 1 : 0;
     z_lit = any_light(b.z, face) ? 1 : 0;
@@ -369,7 +390,7 @@ void OrdinatesTransportCpu::sweep_row(int octant, int y, int z, RadianceLeaves* 
 
 size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
   const glm::ivec3 n = leaf_blocks(grid);
-  const size_t flow = flow_bytes(n, face_floats(octets_of(choice.directions / 8)));
+  const size_t flow = flow_bytes(n, face_floats(octets_of(std::min(choice.directions / 8, int(kBatch)))));
   return sizeof(OrdinatesTransportCpu) + expected.blocks * (sizeof(sweep::BlockSides) + 1) +
          size_t(n.x) * size_t(n.y) * size_t(n.z) * sizeof(int) +
          expected.sides * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) + flow_count(flow, kManyFlows) * flow;
