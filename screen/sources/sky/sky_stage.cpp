@@ -1,8 +1,11 @@
 #include "screen/sources/sky/sky_stage.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "core/error.h"
+#include "screen/frame/quality.h"
 #include "screen/sources/sky/sky_gather.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
 
@@ -87,6 +90,11 @@ constinit const StageType SKY{
     .parameters = PARAMETERS,
     .role = role,
     .make = [](const StageContext& context) -> std::unique_ptr<Stage> { return std::make_unique<SkyStage>(context); },
-    .report_nothing = [](FrameReport& report) { report.add("sky_parts", 0.0); }};
+    .report_nothing = [](FrameReport& report) { report.add("sky_parts", 0.0); },
+    .suit =
+        [](const Needs& needs, TypeMap& settings) {
+          settings.of<Options>().parts = std::min(int(std::lround(Options().parts * needs.maps)), SKY_MAX_PARTS);
+          settings.of<Options>().map_texels = int(std::lround(Options().map_texels * needs.maps));
+        }};
 
 }  // namespace volgi::screen
