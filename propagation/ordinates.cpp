@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <string>
+#include <utility>
 
 #include "core/error.h"
 
@@ -28,6 +29,25 @@ void add_permutations(OrdinateSet& set, glm::vec3 cosines, float octant_share_ea
   for (glm::ivec3 order : {glm::ivec3(0, 1, 2), {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
     add_direction(set, {cosines[order.x], cosines[order.y], cosines[order.z]}, octant_share_each);
   }
+}
+
+/// The octant's triangle, halved so many times along great circles: weights are areas, directions means (Lambert: half
+/// the sum over edges of their angle times the normal of their plane).
+void add_triangles(OrdinateSet& set, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, int times) {
+  if (times > 0) {
+    const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+    add_triangles(set, a, ab, ca, times - 1);
+    add_triangles(set, ab, b, bc, times - 1);
+    add_triangles(set, ca, bc, c, times - 1);
+    add_triangles(set, ab, bc, ca, times - 1);
+    return;
+  }
+  glm::dvec3 mean(0.0);
+  for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+    mean += 0.5 * std::acos(glm::dot(p, q)) * glm::normalize(glm::cross(p, q));
+  const double area =
+      2.0 * std::atan2(glm::dot(a, glm::cross(b, c)), 1.0 + glm::dot(a, b) + glm::dot(b, c) + glm::dot(c, a));
+  add_direction(set, glm::vec3(mean), float(area / (0.5 * glm::pi<double>())));
 }
 
 }  // namespace
@@ -57,9 +77,12 @@ OrdinateSet ordinate_set(int directions) {
       add_permutations(set, 0.2870176f, 0.6773555f, 0.0840497f);
       add_direction(set, glm::vec3(1.0f), 0.0988103f);
       break;
+    case 512:
+      add_triangles(set, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, 3);
+      break;
     default:
       throw Error(ExitCode::usage,
-                  "no set of " + std::to_string(directions) + " directions; there are 8, 24, 48, 80 and 128");
+                  "no set of " + std::to_string(directions) + " directions; there are 8, 24, 48, 80, 128 and 512");
   }
   for (size_t i = 0; i < set.directions.size(); ++i) set.t += 4.0f * set.weights[i] * set.directions[i].x;
   return set;

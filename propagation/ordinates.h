@@ -20,8 +20,8 @@ struct OrdinateSet {
 
 /// 8: (1,1,1)/sqrt3. 24: permutations of (0.267, 0.682, 0.682), normalised. 48 and 80: level-symmetric S6 and S8 (Lewis
 /// and Miller 1984, table 4-1). 128: the octant halved twice along its great circles, 16 triangles; weight the area of
-/// a triangle, direction its mean. Never a direction along an axis: its light would not spread
-/// (docs/theory.md#ordinates).
+/// a triangle, direction its mean. 512: halved three times, 64 triangles; on the CPU. Never a direction along an axis:
+/// its light would not spread (docs/theory.md#ordinates).
 /// @throws Error(usage) for another number, naming these.
 OrdinateSet ordinate_set(int directions);
 

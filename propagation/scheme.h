@@ -17,7 +17,7 @@ enum class Ordinates { step, characteristic };
 
 struct SchemeOptions {
   Scheme scheme = Scheme::ordinates;
-  std::optional<int> directions;       // of ordinates: 8, 24, 48, 80, 128; none: what goes with the grid
+  std::optional<int> directions;       // of ordinates: 8, 24, 48, 80, 128, 512; none: what goes with the grid
   std::optional<Ordinates> ordinates;  // none: what goes with the grid
   int sh_order = 1;                    // of the three SH schemes: 1 or 2
   bool constant_albedo = false;        // gaitatzes2010: 0.5 after the first bounce, as the paper has it

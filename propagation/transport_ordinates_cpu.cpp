@@ -77,12 +77,18 @@ std::vector<Lane> lanes_of(int directions) {
   return lanes;
 }
 
-sweep::Constants make_constants(const OrdinateSet& set, Ordinates rule, float cell_size_m) {
+constexpr size_t kBatch = 16;  // directions of an octant
+
+size_t directions_in(const OrdinateSet& set, size_t batch) {
+  return std::min(kBatch, set.directions.size() - batch * kBatch);
+}
+
+sweep::Constants make_constants(const OrdinateSet& set, size_t batch, Ordinates rule, float cell_size_m) {
   sweep::Constants c;
-  const int directions = int(set.directions.size());
+  const int directions = int(directions_in(set, batch));
   c.octets = octets_of(directions);
   assert(c.octets <= sweep::kMaxOctets);
-  for (const Lane& l : lanes_of(directions)) set_lane(c, l.lane, set, l.direction, rule, cell_size_m);
+  for (const Lane& l : lanes_of(directions)) set_lane(c, l.lane, set, batch * kBatch + l.direction, rule, cell_size_m);
   const int in_quads = std::min(directions, 2 * c.octets);
   // Two directions more in the fourth lanes of three octets, one band each.
   for (int d = in_quads; d < directions; ++d) {
@@ -177,13 +183,21 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
   return volume;
 }
 
+std::vector<sweep::Constants> OrdinatesTransportCpu::make_batches(OrdinateChoice choice, float cell_size_m) {
+  const OrdinateSet set = ordinate_set(choice.directions);
+  std::vector<sweep::Constants> batches;
+  for (size_t b = 0; b * kBatch < set.directions.size(); ++b)
+    batches.push_back(make_constants(set, b, choice.rule, cell_size_m));
+  return batches;
+}
+
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
                                              const sweep::Kernels* kernels, const RanksOfVolume* ranks,
                                              size_t many_flows)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
-      constants_(make_constants(ordinate_set(choice.directions), choice.rule, voxels.grid().cell_size_m)),
+      batches_(make_batches(choice, voxels.grid().cell_size_m)),
       pipeline_(ranks, voxels.part(), face_floats(), many_flows) {
   pack_sides();
 }
@@ -232,13 +246,17 @@ void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
   const OrdinateSet set = ordinate_set(choice_.directions);
   const size_t n = set.directions.size();
   const std::vector<glm::vec3> flux = rim_inflow(sky, set);
-  for (size_t octant = 0; octant < 8; ++octant) {
-    for (Floats& lanes : inflow_[octant]) lanes.assign(sweep::kMaxLanes, 0.0f);
-    for (const Lane& l : lanes_of(int(n))) {
-      glm::vec3 handed =
-          inflow_per_flux(set, l.direction, voxels_.grid().cell_size_m) * flux[octant * n + l.direction][l.band];
-      if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[l.direction]).share[0];
-      for (int axis = 0; axis < 3; ++axis) inflow_[octant][size_t(axis)][size_t(l.lane)] = handed[axis];
+  inflow_.resize(batches_.size());
+  for (size_t batch = 0; batch < batches_.size(); ++batch) {
+    for (size_t octant = 0; octant < 8; ++octant) {
+      std::array<Floats, 3>& by_axis = inflow_[batch][octant];
+      for (Floats& lanes : by_axis) lanes.assign(sweep::kMaxLanes, 0.0f);
+      for (const Lane& l : lanes_of(int(directions_in(set, batch)))) {
+        const size_t d = batch * kBatch + l.direction;
+        glm::vec3 handed = inflow_per_flux(set, d, voxels_.grid().cell_size_m) * flux[octant * n + d][l.band];
+        if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[d]).share[0];
+        for (int axis = 0; axis < 3; ++axis) by_axis[size_t(axis)][size_t(l.lane)] = handed[axis];
+      }
     }
   }
 }
@@ -248,14 +266,24 @@ void OrdinatesTransportCpu::fill_rim(SweepPipeline::Task task, int axis) {
   const SweepPipeline::Plane plane = pipeline_.plane(task, axis);
   std::fill(plane.lit, plane.lit + plane.faces, static_cast<unsigned char>(streams_in_ ? 1 : 0));
   for (size_t face = 0; face < plane.faces && streams_in_; ++face)
-    kernels_.fill_face(constants_.octets, inflow_[size_t(task.octant)][size_t(axis)].data(),
+    kernels_.fill_face(constants().octets, inflow_[batch_][size_t(task.octant)][size_t(axis)].data(),
                        plane.values + face * face_floats());
 }
 
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
-  sweep(false, nullptr);
+  for (batch_ = 0; batch_ < batches_.size(); ++batch_) {
+    sweep(false, nullptr);
+    add_arrived(received);
+  }
+  batch_ = 0;
+  report.passes += 1;
+  return true;
+}
+
+/// What the octants have brought, times what sides stop of it; leaves nothing behind.
+void OrdinatesTransportCpu::add_arrived(std::span<glm::vec4> received) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
     for (size_t i = sides.begin(); i < sides.end(); ++i) {
       glm::vec4* a = &arrived_[4 * i];
@@ -264,14 +292,13 @@ bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_pas
       std::fill(a, a + 4, glm::vec4(0.0f));
     }
   });
-  report.passes += 1;
-  return true;
 }
 
 RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
   begin(sent);
   RadianceLeaves leaves(voxels_.part());
-  sweep(true, &leaves);  // octants add to the same cells
+  for (batch_ = 0; batch_ < batches_.size(); ++batch_) sweep(true, &leaves);  // octants add to the same cells
+  batch_ = 0;
   std::fill(arrived_.begin(), arrived_.end(), glm::vec4(0.0f));
   return std::move(leaves).volume(voxels_.grid());
 }
@@ -325,10 +352,10 @@ void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, Ra
   unsigned char& x_lit = several ? pipeline_.carried_lit(octant, row) : of_row_lit;
   if (task.chunk == 0) {
     x_lit = streams_in_ ? 1 : 0;
-    if (streams_in_) kernels_.fill_face(constants_.octets, inflow_[size_t(octant)][0].data(), x_carried);
+    if (streams_in_) kernels_.fill_face(constants().octets, inflow_[batch_][size_t(octant)][0].data(), x_carried);
   }
   const sweep::Kernel kernel =
-      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants_.octets, leaves != nullptr);
+      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants().octets, leaves != nullptr);
   for (int x = first_x; x < std::min(first_x + width, n.x); ++x) {
     const glm::ivec3 along(x, y, z);
     const glm::ivec3 block = part.first + positive * along + (1 - positive) * (n - 1 - along);
@@ -355,7 +382,7 @@ void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, Ra
       b.arrived = &arrived_[4 * first].x;
     }
     if (leaves != nullptr) leaves->attach(b, block);
-    kernel(constants_, b);
+    kernel(constants(), b);
     x_lit = any_light(b.x, face) ? 1 : 0;
     y_lit = any_light(b.y, face) ? 1 : 0;
     z_lit = any_light(b.z, face) ? 1 : 0;
@@ -365,13 +392,14 @@ void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, Ra
 size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
   const BlockBox all{glm::ivec3(0), leaf_blocks(grid)};
   return bytes_of_sides(all, expected) +
-         SweepPipeline::bytes_for(nullptr, all, face_floats(octets_of(choice.directions / 8)));
+         SweepPipeline::bytes_for(nullptr, all, face_floats(octets_of(std::min(choice.directions / 8, int(kBatch)))));
 }
 
 size_t OrdinatesTransportCpu::bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice,
                                         const ExpectedSides& expected) {
   return bytes_of_sides(ranks.part(), expected) +
-         SweepPipeline::bytes_for(&ranks, ranks.part(), face_floats(octets_of(choice.directions / 8)));
+         SweepPipeline::bytes_for(&ranks, ranks.part(),
+                                  face_floats(octets_of(std::min(choice.directions / 8, int(kBatch)))));
 }
 
 size_t OrdinatesTransportCpu::bytes_of_sides(const BlockBox& part, const ExpectedSides& expected) {

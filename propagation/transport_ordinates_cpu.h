@@ -60,16 +60,22 @@ class OrdinatesTransportCpu : public TransportCpu {
   void sweep_chunk(SweepPipeline::Task task, bool threaded, RadianceLeaves* leaves);
   void sweep_row(SweepPipeline::Task task, int y, int z, RadianceLeaves* leaves);
   static size_t bytes_of_sides(const BlockBox& part, const ExpectedSides& expected);
-  size_t face_floats() const { return face_floats(constants_.octets); }
+  static std::vector<sweep::Constants> make_batches(OrdinateChoice choice, float cell_size_m);
+  void add_arrived(std::span<glm::vec4> received);
+  const sweep::Constants& constants() const { return batches_[batch_]; }
+  size_t face_floats() const { return face_floats(batches_[0].octets); }
   static size_t face_floats(int octets) { return sweep::kBlockFace * size_t(octets) * sweep::kOctet; }
 
   const VoxelGrid& voxels_;
   OrdinateChoice choice_;
   sweep::Kernels kernels_;
-  sweep::Constants constants_;
+  /// Up to 16 directions of an octant each, the most that kernels take: larger sets go in turn. `batch_` is swept.
+  std::vector<sweep::Constants> batches_;
+  size_t batch_ = 0;
   SweepPipeline pipeline_;
-  /// What blocks at the rim find where light comes in, by octant and axis: one row of lanes.
-  std::array<std::array<Floats, 3>, 8> inflow_;
+  /// What blocks at the rim find where light comes in, by octant and axis, of each batch: one row of lanes.
+  using Inflow = std::array<std::array<Floats, 3>, 8>;
+  std::vector<Inflow> inflow_;
   std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
   bool streams_in_ = false;
   // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.

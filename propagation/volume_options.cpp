@@ -45,6 +45,9 @@ const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
 }
 
 void refuse_on_gpu(const VolumeOptions& o) {
+  if (o.scheme.directions.value_or(0) > VolumeOptions::kMaxDirectionsGpu)
+    throw Error(ExitCode::over_limit, fmt::format("--directions {}: the GPU takes {}; use --backend cpu",
+                                                  *o.scheme.directions, VolumeOptions::kMaxDirectionsGpu));
   if (o.grid_cells > VolumeOptions::kMaxDenseGridCells)
     throw Error(ExitCode::over_limit, fmt::format("--grid {}: the GPU takes {} cells along an axis; use --backend cpu",
                                                   o.grid_cells, VolumeOptions::kMaxDenseGridCells));

@@ -39,6 +39,7 @@ struct VolumeOptions {
   /// Of the GPU, where which faces surfaces cross is decided in double precision (shaders/voxel/lattice.glsl), and of
   /// schemes that keep light in every cell.
   static constexpr int kMaxDenseGridCells = 256;
+  static constexpr int kMaxDirectionsGpu = 128;
   static constexpr int kPulseIterations = 64;  // Gaitatzes 2010, table 1, "room"
 };
 

@@ -154,10 +154,12 @@ py::dict render(LoadedScene& loaded, const py::kwargs& keywords) {
   app::SceneOptions with_size = loaded.options;
   with_size.size_text = size;
   screen::FrameOptions options = asked.frame_options(with_size.size());
-  asked.volume.fit_grid(loaded.scene, options.of<VolumeOptions>());
+  const Camera camera = loaded.options.camera(loaded.scene);
+  if (screen::quality_from_name(asked.quality) == screen::Quality::truth)
+    throw Error(ExitCode::usage, "quality='truth' climbs picture by picture: only the command does that");
+  const int wanted = asked.fit(loaded.scene, glm::vec3(camera.world_from_camera[3]), 0, options).needs.samples;
   gl::PassTimer untimed(context().software(), false);
   screen::Frame frame(loaded.scene, options);
-  const Camera camera = loaded.options.camera(loaded.scene);
   frame.render(camera, untimed);
   py::dict out, layers;
   for (const screen::RadianceLayer& layer : frame.layers()) {
@@ -167,9 +169,9 @@ py::dict render(LoadedScene& loaded, const py::kwargs& keywords) {
   Image image = screen::image_from_texture(frame.radiance());
   const bool blends = std::any_of(loaded.scene.materials.begin(), loaded.scene.materials.end(),
                                   [](const Material& m) { return m.passes_by_chance(); });
-  const int count = blends ? 8 : 1;
+  const int count = std::max(blends ? 8 : 1, wanted);
   for (int k = 1; k < count; ++k) {
-    frame.set_sample(k, false);
+    frame.set_sample(k, wanted > 1);
     frame.render(camera, untimed);
     const Image other = screen::image_from_texture(frame.radiance());
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += other.pixels[i];

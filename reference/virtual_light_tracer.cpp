@@ -134,10 +134,14 @@ class PictureGather {
   glm::vec3 visible(const PathVertex& vertex, const GatheredLight& light, std::uint32_t seed) const {
     const glm::dvec3 between = light.aim - glm::dvec3(vertex.start);
     const double distance = glm::length(between);
-    if (!(distance > ray_end_)) return glm::vec3(1.0f);
-    return integrator_.rays().passed({vertex.start,
-                                      glm::vec3(between / distance),
-                                      static_cast<float>(distance - ray_end_),
+    const double radius = std::sqrt(light.area_m2 / kPi);
+    const double from = options_.blind_at_receiver * radius;
+    const double end = from + ray_end_ + options_.blind_at_light * radius;
+    if (!(distance > end)) return glm::vec3(1.0f);
+    const glm::dvec3 way = between / distance;
+    return integrator_.rays().passed({vertex.start + glm::vec3(from * way),
+                                      glm::vec3(way),
+                                      static_cast<float>(distance - end),
                                       hash(seed, light.index),
                                       vertex.triangle,
                                       {}});

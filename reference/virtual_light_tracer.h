@@ -14,6 +14,9 @@ namespace volgi {
 struct VirtualLightGatherOptions {
   glm::ivec2 size{512, 512};
   enum class Visibility { exact, none } visibility = Visibility::exact;
+  /// Of a light's radius, sqrt(A / pi): what is nearer than that to the receiver, or to the light, hides nothing. Tells
+  /// what contact counts for; 0: everything hides.
+  double blind_at_receiver = 0.0, blind_at_light = 0.0;
   PathTracerOptions::Light light = PathTracerOptions::Light::full;
   std::uint32_t seed = 1;  // of the chance by which rays pass BLEND surfaces
   int threads = 0;         // 0: all; the picture does not depend on it

@@ -100,6 +100,7 @@ Settings DemoOptions::settings(std::vector<std::string>& unknown) const {
     if (frame.gi.empty() && !headless && !recent_recipe.empty()) screen::apply_recipe(recent_recipe, settings.frame);
   }
   if (!preset.empty()) apply_preset(preset, settings);
+  if (preset.empty() && frame.quality != app::FrameCommandOptions().quality) apply_preset(frame.quality, settings);
   if (headless) settings.view = info(View::picture).name;
   if (!view.empty()) settings.view = info(view_of(view)).name;
   if (exposure == "auto") {

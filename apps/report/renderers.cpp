@@ -25,17 +25,43 @@ void parse(CLI::App& command, const std::vector<std::string>& options) {
   }
 }
 
-screen::FrameOptions frame_options(const std::vector<std::string>& options, const std::string& light, glm::ivec2 size) {
+struct AskedFrame {
+  FrameCommandOptions command;
+  screen::FrameOptions options;
+  bool by_quality = false;  // that --quality names: without it a technique is measured as its options have it
+};
+
+AskedFrame frame_options(const std::vector<std::string>& options, const std::string& light, glm::ivec2 size) {
   CLI::App command;
-  FrameCommandOptions asked;
-  asked.add_to(command);
+  AskedFrame asked;
+  asked.command.add_to(command);
   parse(command, options);
-  asked.light = light;
-  return asked.frame_options(size);
+  asked.command.light = light;
+  asked.options = asked.command.frame_options(size);
+  asked.by_quality = command.count("--quality") > 0;
+  if (screen::quality_from_name(asked.command.quality) == screen::Quality::truth)
+    throw Error(ExitCode::usage, "--quality truth climbs from picture to picture, which is no frame to time");
+  return asked;
+}
+
+/// The mean of the picture that there is and of `count` - 1 others.
+Image mean_of_samples(screen::Frame& frame, const Camera& camera, int count, gl::PassTimer& timer) {
+  Image image = screen::image_from_texture(frame.radiance());
+  for (int k = 1; k < count; ++k) {
+    frame.set_sample(k, true);
+    frame.render(camera, timer);
+    const Image other = screen::image_from_texture(frame.radiance());
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += other.pixels[i];
+  }
+  for (glm::vec3& p : image.pixels) p /= float(count);
+  return image;
 }
 
 Rendering render_frames(const RenderTask& task) {
-  screen::Frame frame(task.scene, frame_options(task.options, task.light, task.size));
+  AskedFrame asked = frame_options(task.options, task.light, task.size);
+  const glm::vec3 eye(task.camera.world_from_camera[3]);
+  const int samples = asked.by_quality ? asked.command.fit(task.scene, eye, 0, asked.options).needs.samples : 1;
+  screen::Frame frame(task.scene, asked.options);
   gl::PassTimer timer(task.context.software(), true);
   const int warm_up = warm_up_frames(task.frames);
   for (int f = 0; f < warm_up + task.frames; ++f) {
@@ -45,12 +71,13 @@ Rendering render_frames(const RenderTask& task) {
     timer.end_frame();
   }
   Rendering out;
-  out.picture = screen::image_from_texture(frame.radiance());
+  gl::PassTimer untimed(task.context.software(), false);
+  out.picture = mean_of_samples(frame, task.camera, samples, untimed);
   for (const auto& pass : timer.medians()) out.passes.push_back({{"name", pass.name}, {"ms", pass.gpu_ms}});
   const auto time = timer.frame_time();
-  out.min_ms = time.min_ms;
-  out.median_ms = time.median_ms;
-  out.max_ms = time.max_ms;
+  out.min_ms = samples * time.min_ms;  // of the picture: passes are of one sample
+  out.median_ms = samples * time.median_ms;
+  out.max_ms = samples * time.max_ms;
   out.timer = timer.kind() == gl::PassTimer::Kind::gpu ? "gpu" : "wall";
   out.memory_bytes = frame.report().memory_bytes;
   return out;

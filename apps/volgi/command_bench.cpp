@@ -18,6 +18,7 @@
 #include "apps/bench/nichols2010_area.h"
 #include "apps/bench/propagation.h"
 #include "apps/bench/repeated_frame.h"
+#include "apps/bench/split.h"
 #include "apps/bench/voxelize.h"
 #include "apps/bench/voxelize_gl.h"
 #include "apps/report/machine.h"
@@ -72,6 +73,7 @@ struct BenchCommand {
   void run_dong2009(nlohmann::json& results) const;
   void run_nichols2010(nlohmann::json& results) const;
   void run_against_path_tracing(nlohmann::json& results) const;
+  void run_split(nlohmann::json& results) const;
   void run_lattice(nlohmann::json& results) const;
   void run_nichols2010_area(nlohmann::json& results) const;
   void run_gpu(nlohmann::json& results) const;
@@ -217,6 +219,19 @@ void BenchCommand::run_against_path_tracing(nlohmann::json& results) const {
   }
 }
 
+void BenchCommand::run_split(nlohmann::json& results) const {
+  const gl::Context context(device.context);
+  SplitOptions options;
+  options.cache = cache;
+  options.size = size.value_or(options.size);
+  options.reference_spp = reference_spp;
+  for (const std::string& name : scenes_or({"cornell", "room"})) {
+    nlohmann::json result = bench_split(scene(name), context, options);
+    show(split_table(result));
+    results["split"].push_back(std::move(result));
+  }
+}
+
 void BenchCommand::run_lattice(nlohmann::json& results) const {
   const gl::Context context(device.context);
   LatticeBenchOptions options;
@@ -288,6 +303,7 @@ constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
                                      {"dong2009", &BenchCommand::run_dong2009},
                                      {"nichols2010", &BenchCommand::run_nichols2010},
                                      {"against-path-tracing", &BenchCommand::run_against_path_tracing},
+                                     {"split", &BenchCommand::run_split},
                                      {"lattice", &BenchCommand::run_lattice},
                                      {"nichols2010_area", &BenchCommand::run_nichols2010_area},
                                      {"gpu", &BenchCommand::run_gpu},
@@ -327,7 +343,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "time the CPU's volume against copying memory and OpenVDB; 'cochran2007', 'dong2009' and 'nichols2010' repeat "
       "those papers' tables and curves, 'nichols2010_area' that thesis' figures on area lights; 'lattice' measures the "
       "wave lattice and imperfect maps; 'against-path-tracing' tells how long "
-      "path tracing takes to the error of --gi hybrid; "
+      "path tracing takes to the error of --gi hybrid, 'split' which of hybrid's terms its error is in; "
       "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error; "
       "'mpi', under mpirun, measures sweeps over ranks beside what a model says of them");
   command->add_option("NAME", options->names, fmt::format("benchmarks to run: {} (all)", benchmark_names()));
@@ -342,24 +358,28 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                    "512 and 1024]")
       ->check(CLI::Range(16, 8192));
   command
-      ->add_option("--scene", options->scenes,
-                   "scenes by name, of frame, dong2009, nichols2010, lattice and against-path-tracing [their own]")
+      ->add_option(
+          "--scene", options->scenes,
+          "scenes by name, of frame, dong2009, nichols2010, lattice, split and against-path-tracing [their own]")
       ->type_name("NAME");
   command->add_option("--curve-vpls", options->curve_lights, "dong2009: numbers of virtual lights of its curve")
       ->check(CLI::Range(2, 65536))
       ->capture_default_str();
-  command->add_option("--reference-spp", options->reference_spp, "against-path-tracing: samples of its reference")
+  command
+      ->add_option("--reference-spp", options->reference_spp,
+                   "samples of the references of against-path-tracing and split")
       ->check(CLI::Range(2, 1 << 24))
       ->capture_default_str();
   command
-      ->add_option("--cache", options->cache,
-                   "folder that keeps the references of against-path-tracing; empty it when the path tracer changes")
+      ->add_option(
+          "--cache", options->cache,
+          "folder that keeps the references of against-path-tracing and split; empty it when the path tracer changes")
       ->capture_default_str();
   command->add_option("--grid", options->grid_cells, "cells along the longest axis")
-      ->check(CLI::Range(1, VolumeOptions::kMaxGridCells))
+      ->check(CLI::Range(1, VolumeOptions::kMaxDenseGridCells))
       ->capture_default_str();
   command->add_option("--largest-grid", options->largest_grid, "cells on an edge, for propagation, voxelize and mpi")
-      ->check(CLI::Range(32, VolumeOptions::kMaxGridCells))
+      ->check(CLI::Range(32, VolumeOptions::kMaxDenseGridCells))
       ->capture_default_str();
   command->add_option("--iterations", options->iterations, "passes over the volume")
       ->check(CLI::Range(1, 100000))

@@ -163,7 +163,8 @@ int ExportCommand::run() const {
   check_writable(program_ranks() != nullptr ? part_path(out, program_ranks()->rank()) : out);
   Scene scene = load_scene(scene_path, time_s, file.reading);
   light.apply(scene);
-  volume.fit_grid(scene, std::nullopt, options);
+  volume.fit_grid(scene, options);
+  refuse_on_cpu(options);
   if (scene.sky && has_radiance() && streaming_sky(scene, options) == nullptr)
     warn_once(scene.name + ": only --scheme ordinates carries the sky's light; it is left out");
   VolumeCpu computed(scene, options, program_ranks());

@@ -55,10 +55,14 @@ struct RenderCommand {
  private:
   std::optional<float> exposure_ev_;  // as asked for, or of the first picture for all of them
   std::optional<SharedFrames> shared_;
+  int samples_by_quality_ = 1;
 
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
-  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer, bool software);
+  TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer, bool software,
+                           Image& image);
+  TimedFrames climb(std::optional<screen::Frame>& picture, screen::FrameOptions& options, const Scene& loaded,
+                    gl::PassTimer& timer, bool software, screen::Climb& climb, FrameCommandOptions::Fitted& fitted);
   TimedFrames render_animation(std::optional<screen::Frame>& picture, const screen::FrameOptions& options,
                                const SceneSource& source, Scene& moving, const FrameTimes& times, const WorldBox& box,
                                gl::PassTimer& timer, bool software);
@@ -67,7 +71,11 @@ struct RenderCommand {
   void light(Scene& loaded, const Camera& camera) const;
   void read_exposure();
   void choose_exposure(const Image& image, const std::filesystem::path& path);
+  screen::Quality quality() const { return screen::quality_from_name(frame.quality); }
+  FrameCommandOptions::Fitted fit(const Scene& loaded, int rung, screen::FrameOptions& options);
+  void say(const FrameCommandOptions::Fitted& fitted) const;
   int sample_count(const Scene& loaded) const;
+  bool jitters() const { return samples.has_value() || samples_by_quality_ > 1; }
   Image all_samples(screen::Frame& picture, const Scene& loaded, const Camera& camera, bool software) const;
   void write_picture(const Image& image, const std::filesystem::path& path);
   nlohmann::json numbers(const screen::Frame& picture, const screen::FrameOptions& options, const Scene& loaded,
@@ -144,7 +152,8 @@ void warn_of_exposure(const Image& image, float exposure_ev, const std::filesyst
 int RenderCommand::sample_count(const Scene& loaded) const {
   constexpr int OF_BLEND = 8;
   const auto blends = [](const Material& m) { return m.passes_by_chance(); };
-  return samples.value_or(std::any_of(loaded.materials.begin(), loaded.materials.end(), blends) ? OF_BLEND : 1);
+  const bool any = std::any_of(loaded.materials.begin(), loaded.materials.end(), blends);
+  return samples.value_or(std::max(any ? OF_BLEND : 1, samples_by_quality_));
 }
 
 /// The mean of the picture that there is, sample 0, and of the others, which are not timed.
@@ -154,12 +163,12 @@ Image RenderCommand::all_samples(screen::Frame& picture, const Scene& loaded, co
   const int count = sample_count(loaded);
   gl::PassTimer untimed(software, false);
   for (int k = 1; k < count; ++k) {
-    picture.set_sample(k, samples.has_value());
+    picture.set_sample(k, jitters());
     picture.render(camera, untimed);
     const Image other = screen::image_from_texture(picture.radiance());
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += other.pixels[i];
   }
-  picture.set_sample(0, samples.has_value());
+  picture.set_sample(0, jitters());
   for (glm::vec3& p : image.pixels) p /= float(count);
   return image;
 }
@@ -181,9 +190,53 @@ void RenderCommand::light(Scene& loaded, const Camera& camera) const {
   if (writes_png()) scene.add_default_lamp(loaded, camera);
 }
 
+/// What the quality asks of the scene. The grid of what moves is around all of it.
+FrameCommandOptions::Fitted RenderCommand::fit(const Scene& loaded, int rung, screen::FrameOptions& options) {
+  const bool stands = animate.empty() && !whole_animation;
+  const auto eye = stands ? std::optional(glm::vec3(scene.camera(loaded).world_from_camera[3])) : std::nullopt;
+  FrameCommandOptions::Fitted fitted = frame.fit(loaded, eye, rung, options);
+  samples_by_quality_ = fitted.needs.samples;
+  return fitted;
+}
+
+void RenderCommand::say(const FrameCommandOptions::Fitted& fitted) const {
+  if (quiet) return;
+  std::string text;
+  for (const screen::Chosen& c : fitted.chosen) text += fmt::format(", {} {}", c.name, c.value);
+  if (fitted.needs.samples > 1 && !samples) text += fmt::format(", {} samples", fitted.needs.samples);
+  fmt::print("quality {}{}\n", frame.quality, text.empty() ? "" : ": " + text.substr(2));
+}
+
+/// From rung to rung until two answers agree; the last one's frame is left in `picture`.
+TimedFrames RenderCommand::climb(std::optional<screen::Frame>& picture, screen::FrameOptions& options,
+                                 const Scene& loaded, gl::PassTimer& timer, bool software, screen::Climb& climb,
+                                 FrameCommandOptions::Fitted& fitted) {
+  TimedFrames timed;
+  Image answer;
+  for (bool on = true; on;) {
+    if (climb.rung() > 0) {
+      picture.reset();  // first, so that there are never two
+      fitted = fit(loaded, climb.rung(), options);
+      picture.emplace(loaded, options);
+      timer.reset();
+    }
+    say(fitted);
+    timed = render_still(*picture, loaded, timer, software, answer);
+    on = climb.next(answer);
+    if (!quiet && !climb.changes_percent().empty())
+      fmt::print("rung {}: {:.2f} % of the picture's mean has changed\n", climb.rung() - 1,
+                 climb.changes_percent().back());
+  }
+  if (!climb.agrees())
+    warn_once(fmt::format("{}: the last two answers differ by {:.2f} %, more than {:g}", loaded.name,
+                          climb.changes_percent().back(), screen::Climb::ENOUGH_PERCENT));
+  write_picture(answer, out);
+  return timed;
+}
+
 /// Renders the same picture `frames` times, to time it.
 TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer,
-                                        bool software) {
+                                        bool software, Image& image) {
   const Camera camera = scene.camera(loaded);
   // Two warm-up frames where times of several are wanted. One picture is not rendered twice for its times: they are a
   // cold frame's, and said to be.
@@ -196,7 +249,7 @@ TimedFrames RenderCommand::render_still(screen::Frame& picture, const Scene& loa
     timer.end_frame();
     if (f == 0) timed.cold = cold_frame(timer);
   }
-  write_picture(all_samples(picture, loaded, camera, software), out);
+  image = all_samples(picture, loaded, camera, software);
   return timed;
 }
 
@@ -264,6 +317,8 @@ nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen
 int RenderCommand::run() {
   set_quiet(quiet);
   read_exposure();
+  if (quality() == screen::Quality::truth && (!animate.empty() || frames > 1))
+    throw Error(ExitCode::usage, "--quality truth climbs to one picture: neither --animate nor --frames go with it");
   frame.volume.limit_threads();
   screen::FrameOptions options = frame.frame_options(scene.size());
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
@@ -275,9 +330,7 @@ int RenderCommand::run() {
   video.show(loaded, animate.empty() ? scene.time_s : times.at(0));
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
-  const bool stands = animate.empty() && !whole_animation;
-  frame.volume.fit_grid(loaded, stands ? std::optional(glm::vec3(camera.world_from_camera[3])) : std::nullopt,
-                        options.of<VolumeOptions>());
+  FrameCommandOptions::Fitted fitted = fit(loaded, 0, options);
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
   std::optional<screen::Frame> picture(std::in_place, loaded, options);
@@ -287,14 +340,24 @@ int RenderCommand::run() {
   }
   const bool timed = !quiet || !stats.empty();  // on a software rasterizer, timing makes passes wait for one another
   gl::PassTimer timer(context.software(), timed);
-  const TimedFrames timed_frames =
-      animate.empty() ? render_still(*picture, loaded, timer, context.software())
-                      : render_animation(picture, options, source, loaded, times, box, timer, context.software());
+  TimedFrames timed_frames;
+  screen::Climb steps;
+  if (quality() == screen::Quality::truth) {
+    timed_frames = climb(picture, options, loaded, timer, context.software(), steps, fitted);
+  } else {
+    say(fitted);
+    Image image;
+    timed_frames = animate.empty()
+                       ? render_still(*picture, loaded, timer, context.software(), image)
+                       : render_animation(picture, options, source, loaded, times, box, timer, context.software());
+    if (animate.empty()) write_picture(image, out);
+  }
   if (timed_frames.count == 0) {
     if (!quiet) fmt::print("all frames were made by others\n");
     return int(ExitCode::done);
   }
-  const auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
+  auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
+  figures["quality"] = quality_json(frame.quality, fitted, steps);
   if (!stats.empty()) {
     write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
   }

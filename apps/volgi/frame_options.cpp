@@ -40,6 +40,13 @@ void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--backend", backend, "where the volume is computed; auto: the CPU where GL is software")
       ->check(CLI::IsMember(BACKENDS))
       ->capture_default_str();
+  command
+      .add_option("--quality", quality,
+                  "cells, lights, clusters, maps and samples by the scene, where no other option says so; truth: more "
+                  "of them until two answers in turn differ by less than 1 %")
+      ->check(
+          CLI::IsMember(std::vector<std::string>(std::begin(screen::QUALITY_NAMES), std::end(screen::QUALITY_NAMES))))
+      ->capture_default_str();
   volume.add_to(command);
   for (const screen::Parameter* p : screen::parameters()) {
     if (p->flag == nullptr) continue;
@@ -76,8 +83,23 @@ void FrameCommandOptions::set_parameters(screen::FrameOptions& o) const {
 
 bool FrameCommandOptions::given() const {
   const FrameCommandOptions usual;
-  return !gi.empty() || light != usual.light || backend != usual.backend || !flagged.empty() || !parameters.empty() ||
-         !without.empty() || volume.given();
+  return !gi.empty() || light != usual.light || backend != usual.backend || quality != usual.quality ||
+         !flagged.empty() || !parameters.empty() || !without.empty() || volume.given();
+}
+
+FrameCommandOptions::Fitted FrameCommandOptions::fit(const Scene& scene, const std::optional<glm::vec3>& eye, int rung,
+                                                     screen::FrameOptions& options) const {
+  const std::optional<GridBox> reached = volume.fit_box(scene, eye, options.of<VolumeOptions>());
+  std::vector<std::string> keep;
+  for (const auto& [name, text] : flagged) keep.push_back(name);
+  for (const std::string& text : parameters) keep.push_back(text.substr(0, text.find('=')));
+  if (volume.grid_cells) keep.emplace_back("grid");
+  Fitted fitted;
+  fitted.facts = scene_facts(scene, options.of<VolumeOptions>().grid_box, volume.grid_cells);
+  fitted.needs = screen::needs_of(screen::quality_from_name(quality), rung, fitted.facts);
+  fitted.chosen = screen::apply_needs(fitted.needs, keep, options);
+  if (reached) warn_of_large_cells(scene, *reached, options.of<VolumeOptions>());
+  return fitted;
 }
 
 std::string FrameCommandOptions::technique() const {

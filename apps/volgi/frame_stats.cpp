@@ -83,6 +83,25 @@ nlohmann::json frame_stats(const std::string& scene, const std::string& mode, gl
   return stats;
 }
 
+nlohmann::json quality_json(const std::string& quality, const FrameCommandOptions::Fitted& fitted,
+                            const screen::Climb& climb) {
+  nlohmann::json chosen = nlohmann::json::object();
+  for (const screen::Chosen& c : fitted.chosen) chosen[c.name] = c.value;
+  const SceneFacts& f = fitted.facts;
+  return {{"name", quality},
+          {"scene",
+           {{"edge_m", f.edge_m},
+            {"cells", f.cells},
+            {"feature_m", f.feature_m},
+            {"flight_m", f.flight_m},
+            {"lit_area_m2", f.lit_area_m2},
+            {"lamps", f.lamps}}},
+          {"chosen", chosen},
+          {"samples", fitted.needs.samples},
+          {"rungs", climb.rung()},
+          {"changes_percent", climb.changes_percent()}};
+}
+
 std::string pass_table(const nlohmann::json& stats) {
   std::string text;
   double sum = 0.0;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/volgi/frame_options.h"
 #include "core/gl/context.h"
 #include "core/gl/pass_timer.h"
 #include "screen/frame/frame_report.h"
@@ -30,6 +31,9 @@ struct TimedFrames {
 nlohmann::json frame_stats(const std::string& scene, const std::string& mode, glm::ivec2 size,
                            const gl::Context& context, gl::PassTimer& timer, const TimedFrames& frames,
                            const screen::FrameReport& report);
+/// --stats' "quality": what the scene asked for, what was chosen, and what each rung of a climb has changed.
+nlohmann::json quality_json(const std::string& quality, const FrameCommandOptions::Fitted& fitted,
+                            const screen::Climb& climb);
 /// The same as a table for people: one line a pass, then the frame.
 std::string pass_table(const nlohmann::json& stats);
 

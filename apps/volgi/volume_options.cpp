@@ -49,18 +49,6 @@ bool is_much_smaller(const GridBox& box, const Scene& scene) {
   return longest_edge(box) < 0.5f * longest_edge({scene.bounds_min, scene.bounds_max});
 }
 
-void warn_of_large_cells(const Scene& scene, const GridBox& reached, const VolumeOptions& options) {
-  constexpr float LEAST_CELLS = 4.0f;  // along the shortest edge; fewer cannot hold a room (docs/theory.md#ordinates)
-  const glm::vec3 e = reached.max - reached.min;
-  const float shortest = std::min({e.x, e.y, e.z});
-  const float cell = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box).cell_size_m;
-  if (shortest < 1e-3f * longest_edge(reached) || shortest >= LEAST_CELLS * cell) return;  // a plane has no height
-  warn_once(
-      fmt::format("{}: cells of {:.2g} m for a place of {:.2g} x {:.2g} x {:.2g} m; its light will be wrong: a larger "
-                  "--grid, or --bounds around what matters",
-                  scene.name, cell, e.x, e.y, e.z));
-}
-
 size_t parse_bytes(const std::string& text) {
   std::uint64_t number = 0;
   const char* end = text.data() + text.size();
@@ -75,6 +63,18 @@ size_t parse_bytes(const std::string& text) {
 }
 
 }  // namespace
+
+void warn_of_large_cells(const Scene& scene, const GridBox& reached, const VolumeOptions& options) {
+  constexpr float LEAST_CELLS = 4.0f;  // along the shortest edge; fewer cannot hold a room (docs/theory.md#ordinates)
+  const glm::vec3 e = reached.max - reached.min;
+  const float shortest = std::min({e.x, e.y, e.z});
+  const float cell = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box).cell_size_m;
+  if (shortest < 1e-3f * longest_edge(reached) || shortest >= LEAST_CELLS * cell) return;  // a plane has no height
+  warn_once(
+      fmt::format("{}: cells of {:.2g} m for a place of {:.2g} x {:.2g} x {:.2g} m; its light will be wrong: a larger "
+                  "--grid, or --bounds around what matters",
+                  scene.name, cell, e.x, e.y, e.z));
+}
 
 Scheme scheme_from_name(const std::string& name) {
   const auto found = kSchemes.find(name);
@@ -93,9 +93,10 @@ const char* scheme_name(Scheme scheme) {
 
 void VolumeCommandOptions::add_to(CLI::App& command) {
   command
-      .add_option("--grid", grid_cells,
-                  "cells along the longest axis of the scene (by the scene: 48, more where they would exceed 0.3 m, "
-                  "short ways of light or gaps that it passes)")
+      .add_option(
+          "--grid", grid_cells,
+          "cells along the longest axis of the scene, on the GPU and of other schemes than ordinates up to 256 (by the "
+          "scene: 48, more where they would exceed 0.3 m, short ways of light or gaps that it passes)")
       ->check(CLI::Range(1, VolumeOptions::kMaxGridCells));
   command
       .add_option(
@@ -114,8 +115,8 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
   command.add_option("--sh-order", sh_order, "order of the spherical harmonics of all schemes but 'ordinates'")
       ->check(CLI::IsMember({1, 2}))
       ->capture_default_str();
-  command.add_option("--directions", directions, "directions of 'ordinates' (by the grid)")
-      ->check(CLI::IsMember({8, 24, 48, 80, 128}));
+  command.add_option("--directions", directions, "directions of 'ordinates', 512 on the CPU (by the grid)")
+      ->check(CLI::IsMember({8, 24, 48, 80, 128, 512}));
   command.add_option("--bounces", bounces, "reflections to follow, 0 is direct light only (all)")
       ->check(CLI::Range(0, 1000));
   command
@@ -149,17 +150,21 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
   return o;
 }
 
-void VolumeCommandOptions::fit_grid(const Scene& scene, const std::optional<glm::vec3>& eye,
-                                    VolumeOptions& options) const {
-  std::optional<GridBox> reached;
+std::optional<GridBox> VolumeCommandOptions::fit_box(const Scene& scene, const std::optional<glm::vec3>& eye,
+                                                     VolumeOptions& options) const {
   if (!bounds.empty()) {
     options.grid_box = box_of(bounds, scene);
-  } else if (eye) {
-    reached = reached_from(scene, *eye);
-    if (reached && is_much_smaller(*reached, scene)) options.grid_box = reached;
+    return {};
   }
+  if (!eye) return {};
+  const std::optional<GridBox> reached = reached_from(scene, *eye);
+  if (reached && is_much_smaller(*reached, scene)) options.grid_box = reached;
+  return reached;
+}
+
+void VolumeCommandOptions::fit_grid(const Scene& scene, VolumeOptions& options) const {
+  fit_box(scene, std::nullopt, options);
   if (!grid_cells) options.grid_cells = automatic_grid_cells(scene, options.grid_box);
-  if (reached) warn_of_large_cells(scene, *reached, options);
 }
 
 void VolumeCommandOptions::limit_threads() const {

@@ -27,14 +27,18 @@ struct VolumeCommandOptions {
   bool given() const;
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
-  /// Puts the grid around --bounds; without it around what the camera (if there is one) and lamps reach
-  /// (reached_box()), where that is less than half as long as the scene, and says so. Where --grid is not given: cells
-  /// that suit it (automatic_grid_cells()). Warns where what is seen is hardly higher than a cell.
-  /// @throws Error(usage) for bounds that no part of the scene is in.
-  void fit_grid(const Scene& scene, const std::optional<glm::vec3>& eye, VolumeOptions& options) const;
+  /// Puts the grid's box around --bounds; without it around what the camera (if there is one) and lamps reach
+  /// (reached_box()), where that is less than half as long as the scene, and says so.
+  /// @return what they reach. @throws Error(usage) for bounds that no part of the scene is in.
+  std::optional<GridBox> fit_box(const Scene& scene, const std::optional<glm::vec3>& eye, VolumeOptions& options) const;
+  /// The same without a camera, and where --grid is not given cells that suit the box (automatic_grid_cells()).
+  void fit_grid(const Scene& scene, VolumeOptions& options) const;
   /// Limits the number of threads from here on (--threads); for the life of the program.
   void limit_threads() const;
 };
+
+/// Warns where what is seen is hardly higher than a cell.
+void warn_of_large_cells(const Scene& scene, const GridBox& reached, const VolumeOptions& options);
 
 /// Name of a scheme on the command line. @throws Error(usage) for another name, naming those that there are.
 Scheme scheme_from_name(const std::string& name);

@@ -1,6 +1,9 @@
 #include "screen/base/base_parameters.h"
 
+#include <cmath>
+
 #include "screen/base/reflective_shadow_map.h"
+#include "screen/frame/quality.h"
 
 namespace volgi::screen {
 
@@ -23,5 +26,11 @@ constexpr Parameter PARAMETERS[] = {
 }  // namespace
 
 std::span<const Parameter> base_parameters() { return PARAMETERS; }
+
+void suit_base(const Needs& needs, TypeMap& settings) {
+  const auto scaled = [&](int texels) { return int(std::lround(texels * needs.maps)); };
+  const Resolution usual;
+  settings.of<Resolution>() = {scaled(usual.spot), scaled(usual.cube_face), scaled(usual.sun)};
+}
 
 }  // namespace volgi::screen

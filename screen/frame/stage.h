@@ -69,6 +69,8 @@ class Stage {
   virtual std::string announcement() const { return {}; }
 };
 
+struct Needs;
+
 /// A technique in the registry.
 struct StageType {
   const char* name;  // its leaf: "SLOT/TECHNIQUE"
@@ -79,6 +81,9 @@ struct StageType {
   std::unique_ptr<Stage> (*make)(const StageContext& context);
   /// Its figures in --stats where it has no part in the picture, so that their names are always there. May be null.
   void (*report_nothing)(FrameReport& report) = nullptr;
+  /// Gives its parameters what a quality asks of the scene, from the defaults of its options (quality.h). Null:
+  /// nothing.
+  void (*suit)(const Needs& needs, TypeMap& settings) = nullptr;
 };
 
 /// A picture's stages: what --gi names.

@@ -69,10 +69,11 @@ TEST(OrdinateSet, IsSymmetric) {
   }
 }
 
-// The 128 again: the octant halved twice along great circles, each triangle its area and mean.
+// The 128 and the 512 again: the octant halved twice, and three times, along great circles, each triangle its area and
+// mean.
 class Triangles {
  public:
-  Triangles() { split({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, 2); }
+  explicit Triangles(int times) { split({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, times); }
   std::vector<std::pair<glm::dvec3, double>> all;  // mean direction, area [sr]
 
  private:
@@ -96,15 +97,17 @@ class Triangles {
 };
 
 TEST(OrdinateSet, GeodesicTriangles) {
-  const OrdinateSet set = ordinate_set(128);
-  for (const auto& [direction, area] : Triangles().all) {
-    int found = 0;
-    for (size_t i = 0; i < set.directions.size(); ++i) {
-      if (glm::distance(glm::dvec3(set.directions[i]), direction) > 1e-6) continue;
-      EXPECT_NEAR(double(set.weights[i]), area, 1e-6);
-      ++found;
+  for (const int times : {2, 3}) {
+    const OrdinateSet set = ordinate_set(8 << (2 * times));
+    for (const auto& [direction, area] : Triangles(times).all) {
+      int found = 0;
+      for (size_t i = 0; i < set.directions.size(); ++i) {
+        if (glm::distance(glm::dvec3(set.directions[i]), direction) > 1e-6) continue;
+        EXPECT_NEAR(double(set.weights[i]), area, 1e-6);
+        ++found;
+      }
+      EXPECT_EQ(found, 1);
     }
-    EXPECT_EQ(found, 1);
   }
 }
 
@@ -112,7 +115,7 @@ constexpr Ordinates kRules[] = {Ordinates::step, Ordinates::characteristic};
 
 TEST(CellTransfer, ConservesAndIsReciprocal) {
   for (Ordinates rule : kRules) {
-    for (int directions : {8, 24, 48, 80, 128}) {
+    for (int directions : {8, 24, 48, 80, 128, 512}) {
       for (glm::vec3 d : ordinate_set(directions).directions) {
         const CellTransfer transfer = cell_transfer(rule, d);
         for (int in = 0; in < 3; ++in) {

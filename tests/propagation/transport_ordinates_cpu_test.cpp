@@ -47,7 +47,8 @@ INSTANTIATE_TEST_SUITE_P(All, OrdinatesCpu,
                          testing::Values(OrdinateChoice{8, kStep}, OrdinateChoice{24, kStep}, OrdinateChoice{48, kStep},
                                          OrdinateChoice{128, kStep}, OrdinateChoice{8, kCharacteristic},
                                          OrdinateChoice{24, kCharacteristic}, OrdinateChoice{48, kCharacteristic},
-                                         OrdinateChoice{80, kCharacteristic}, OrdinateChoice{128, kCharacteristic}),
+                                         OrdinateChoice{80, kCharacteristic}, OrdinateChoice{128, kCharacteristic},
+                                         OrdinateChoice{512, kStep}, OrdinateChoice{512, kCharacteristic}),
                          [](const auto& p) { return testing::PrintToString(p.param); });
 
 void expect_near(const Powers& a, const std::vector<glm::dvec3>& b, double relative) {

@@ -6,6 +6,7 @@
 #include "core/log.h"
 #include "screen/bounces/volume/frame_volume.h"
 #include "screen/frame/plan.h"
+#include "screen/frame/quality.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/resample/virtual_light_subdivision.h"
 #include "screen/sources/sky/sky_stage.h"
@@ -25,6 +26,11 @@ constexpr const char* SOLVERS[] = {"plain", "conjugate_gradients"};
 struct SolverChoice {
   std::optional<int> solver;
 };
+/// Where nobody chooses a number, and the CPU computes.
+struct ManyDirections {
+  static constexpr int kCount = 512;
+  bool on = false;
+};
 /// grid.shift moves along all axes.
 struct GridShift {
   float cells = 0.0f;
@@ -33,13 +39,23 @@ struct GridShift {
 constexpr Parameter PARAMETERS[] = {
     number<GridShift>(
         {"grid.shift", "cells", "moves the grid on each axis"}, {-1, 1}, [](GridShift& o) -> auto& { return o.cells; }),
+    yes_no<VolumeOptions>(
+        {"grid.jitter", "",
+         "of pictures that are averaged, each has its grid elsewhere by parts of a cell, on the CPU"},
+        [](VolumeOptions& o) -> auto& { return o.grid_jitter; }),
     choice<VolumeOptions>(
         {"ordinates.characteristic", "", "ordinates: how power leaves a cell", "by the grid"}, ORDINATES,
         [](VolumeOptions& o) -> auto& { return o.scheme.ordinates; }),
+    yes_no<ManyDirections>(
+        {"ordinates.many", "", "ordinates: 512 directions where --directions does not say, on the CPU"},
+        [](ManyDirections& o) -> auto& { return o.on; }),
     choice<SolverChoice>(
         {"solver.cg", "", "one bounce after another, or conjugate gradients over bounces",
          "conjugate_gradients where the scheme allows it"},
         SOLVERS, [](SolverChoice& o) -> auto& { return o.solver; }),
+    number<VolumeOptions>(
+        {"sides.rays", "", "that virtual lights send to the volume's sides, on the CPU", "8 a side, 65536 to 524288"},
+        {1024, 1 << 28}, [](VolumeOptions& o) -> auto& { return o.side_rays; }),
     yes_no<VolumeOptions>(
         {"solver.warm", "", "starts from the last frame's answer"},
         [](VolumeOptions& o) -> auto& { return o.warm_start; }),
@@ -139,6 +155,11 @@ class VolumeStage : public Stage {
         after_first_bounce_(source == VolumeOptions::Source::first_bounce),
         takes_sky_(after_first_bounce_ && !sky_goes_by_lights(context.options)) {
     options_.source = source;
+    const bool many = context.options.of<ManyDirections>().on && !on_gpu_;
+    if (many && options_.scheme.scheme == Scheme::ordinates && !options_.scheme.directions) {
+      options_.scheme.directions = ManyDirections::kCount;
+      if (!options_.scheme.ordinates) options_.scheme.ordinates = Ordinates::characteristic;
+    }
     make();
     warn_of_mixed_light(context);
   }
@@ -149,6 +170,7 @@ class VolumeStage : public Stage {
   }
   void run(FrameData& frame, gl::PassTimer& timer) override {
     frame.lend(*volume_);
+    volume_->set_sample(frame.sample);
     if (after_first_bounce_) {
       const FirstBounce first{frame.get<VirtualLightListGl>(), frame.find<VirtualLightSubdivision>(),
                               takes_sky_ ? frame.find<SkyMaps>() : nullptr, frame.sample, frame.find<SmoothGather>()};
@@ -221,6 +243,11 @@ std::unique_ptr<Stage> make_stage(const StageContext& context) {
   return std::make_unique<VolumeStage>(context, source);
 }
 
+void suit(const Needs& needs, TypeMap& settings) {
+  settings.of<VolumeOptions>().grid_jitter = needs.samples > 1;
+  settings.of<ManyDirections>().on = needs.samples > 1;
+}
+
 void report_nothing(FrameReport& report) { add_figures(VolumeReport(), report); }
 
 }  // namespace
@@ -232,13 +259,15 @@ constinit const StageType VOLUME{.name = "bounces/volume",
                                  .parameters = PARAMETERS,
                                  .role = role_alone,
                                  .make = make_stage<VolumeOptions::Source::lights>,
-                                 .report_nothing = report_nothing};
+                                 .report_nothing = report_nothing,
+                                 .suit = suit};
 
 constinit const StageType VOLUME_AFTER_FIRST_BOUNCE{.name = "bounces/volume after the first bounce",
                                                     .slot = Slot::bounces,
                                                     .parameters = PARAMETERS,
                                                     .role = role_after_first_bounce,
                                                     .make = make_stage<VolumeOptions::Source::first_bounce>,
-                                                    .report_nothing = report_nothing};
+                                                    .report_nothing = report_nothing,
+                                                    .suit = suit};
 
 }  // namespace volgi::screen

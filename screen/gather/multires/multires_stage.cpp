@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "screen/frame/quality.h"
 #include "screen/gather/gather_choice.h"
 #include "screen/gather/multires/light_cut.h"
 #include "screen/gather/multires/light_tree.h"
@@ -106,6 +107,13 @@ constinit const StageType MULTIRES_GATHER{
     .make = [](const StageContext& context) -> std::unique_ptr<Stage> {
       return std::make_unique<MultiresStage>(context);
     },
-    .report_nothing = [](FrameReport& report) { report.add("gathered_share", 0.0); }};
+    .report_nothing = [](FrameReport& report) { report.add("gathered_share", 0.0); },
+    .suit =
+        [](const Needs& needs, TypeMap& settings) {
+          auto& o = settings.of<SmoothPixelOptions>();
+          o = {};
+          o.tolerance *= float(needs.interpolation);
+          if (needs.interpolation == 0.0) o.coarsest = 1;
+        }};
 
 }  // namespace volgi::screen

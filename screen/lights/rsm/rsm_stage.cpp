@@ -1,5 +1,9 @@
 #include "screen/lights/rsm/rsm_stage.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "screen/frame/quality.h"
 #include "screen/lights/resample/resample_stage.h"
 #include "screen/lights/rsm/virtual_lights.h"
 #include "screen/sources/sky/sky_stage.h"
@@ -67,6 +71,11 @@ constinit const StageType RSM_LIGHTS{
     .parameters = PARAMETERS,
     .role = role,
     .make = [](const StageContext& context) -> std::unique_ptr<Stage> { return std::make_unique<RsmLights>(context); },
-    .report_nothing = [](FrameReport& report) { report.add("vpls", 0.0); }};
+    .report_nothing = [](FrameReport& report) { report.add("vpls", 0.0); },
+    .suit =
+        [](const Needs& needs, TypeMap& settings) {
+          const double count = double(Options().count) * needs.lights;
+          settings.of<Options>().count = std::clamp(int(std::lround(count)), 1, Options::kMaxCount);
+        }};
 
 }  // namespace volgi::screen

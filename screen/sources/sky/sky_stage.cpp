@@ -1,7 +1,10 @@
 #include "screen/sources/sky/sky_stage.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "screen/frame/quality.h"
 #include "screen/sources/sky/sky_gather.h"
 #include "shaders/screen/sources/sky/slots.shared.h"
 
@@ -84,6 +87,11 @@ constinit const StageType SKY{
         [](FrameReport& report) {
           report.add("sky_parts", 0.0);
           report.add("sky_gathered_share", 0.0);
+        },
+    .suit =
+        [](const Needs& needs, TypeMap& settings) {
+          settings.of<Options>().parts = std::min(int(std::lround(Options().parts * needs.maps)), SKY_MAX_PARTS);
+          settings.of<Options>().map_texels = int(std::lround(Options().map_texels * needs.maps));
         }};
 
 }  // namespace volgi::screen

@@ -1,9 +1,12 @@
 #include "screen/visibility/area_maps/area_maps_stage.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
+#include "screen/frame/quality.h"
 #include "screen/visibility/area_maps/light_clusters.h"
 #include "screen/visibility/imperfect/imperfect_maps.h"
 #include "screen/visibility/visibility_choice.h"
@@ -40,6 +43,12 @@ constexpr Parameter PARAMETERS[] = {
         {"val.map", "texels", "on a side of an area light's map"}, {16, 4096},
         [](AreaMapOptions& o) -> auto& { return o.texels; }),
 };
+
+void suit(const Needs& needs, TypeMap& settings) {
+  const double count = double(VirtualAreaLightOptions().count) * needs.lights;
+  settings.of<VirtualAreaLightOptions>().count = std::clamp(int(std::lround(count)), 1, MAX_VIRTUAL_AREA_LIGHTS);
+  settings.of<AreaMapOptions>().texels = int(std::lround(double(AreaMapOptions().texels) * needs.maps));
+}
 
 StageRole role(const FrameOptions& options) {
   if (options.of<VisibilityChoice>().maps == VisibilityChoice::Maps::none)
@@ -105,6 +114,7 @@ constinit const StageType AREA_MAPS{.name = "visibility/area_maps",
                                     .make = [](const StageContext& context) -> std::unique_ptr<Stage> {
                                       return std::make_unique<AreaMapsStage>(context);
                                     },
-                                    .report_nothing = [](FrameReport& report) { report.add("vals", 0.0); }};
+                                    .report_nothing = [](FrameReport& report) { report.add("vals", 0.0); },
+                                    .suit = suit};
 
 }  // namespace volgi::screen
