@@ -852,7 +852,7 @@ class Screenshots(WindowCase):
             subprocess.run([Given.volgi, "render", scene("cornell"), "--size", "8x4", "--gi", "none", "--exposure",
                             exposure, "-o", f"film.{k:04}.png", "--quiet"], check=True, cwd=self.folder, timeout=300)
         window = self.window(scene("emissive"), "--area-video", self.folder / "film.%04d.png", "--area-fps", "2",
-                             size=self.SIZE)
+                             "--exposure", "1", size=self.SIZE)  # automatic exposure would still be on its way
         shown = []
         for t in ("0", "0.5", "1"):
             window.command_for_frame(f"time {t}")

@@ -5,7 +5,7 @@
 SHARED_BEGIN
 
 #define SKY_SURFACE_UNIT 12
-#define SKY_TINT_UNIT 14  // where there is glass
+#define SKY_TINT_UNIT 14   // where there is glass
 #define SKY_PARTS_UNIT 15  // a buffer of SkyPart: software rasterizers read texels faster than uniform arrays
 #define SKY_POINTS_SLOT 10
 #define SKY_FLUX_SLOT 10
