@@ -21,7 +21,7 @@ size_t count(const std::string& text, std::string_view part) {
 TEST(ShaderSource, IncludesEachFileOnceAndKeepsLineNumbers) {
   const std::string text = gl::expand_shader("screen/base/direct.frag.glsl", "#define A 1\n");
   EXPECT_TRUE(text.starts_with("#version 450 core\n#define A 1\n"));
-  EXPECT_EQ(count(text, "//file "), 10u) << gl::file_legend(text);
+  EXPECT_EQ(count(text, "//file "), 11u) << gl::file_legend(text);
   EXPECT_EQ(count(text, "struct PunctualLight {"), 1u);
   EXPECT_EQ(count(text, "#include"), 0u);
   EXPECT_TRUE(gl::file_legend(text).starts_with("0 screen/base/direct.frag.glsl, 1 shared/constants.glsl"));
