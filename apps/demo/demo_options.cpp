@@ -7,7 +7,6 @@
 #include "apps/demo/view.h"
 #include "apps/volgi/parse_number.h"
 #include "core/error.h"
-#include "screen/frame/registry.h"
 
 namespace volgi::demo {
 
@@ -94,10 +93,10 @@ Settings DemoOptions::settings(std::vector<std::string>& unknown) const {
     unknown = std::move(read.unknown);
   }
   if (headless || frame.given()) {
-    const std::string recent_recipe = settings.frame.recipe;
-    settings.frame = frame.frame_options(glm::ivec2(1));
+    app::FrameCommandOptions asked = frame;
+    if (frame.gi.empty() && !headless) asked.gi = settings.frame.recipe;  // the last one
+    settings.frame = asked.frame_options(glm::ivec2(1));
     settings.grid_fits_scene = !frame.volume.grid_cells;
-    if (frame.gi.empty() && !headless && !recent_recipe.empty()) screen::apply_recipe(recent_recipe, settings.frame);
   }
   if (!preset.empty()) apply_preset(preset, settings);
   if (preset.empty() && frame.quality != app::FrameCommandOptions().quality) apply_preset(frame.quality, settings);

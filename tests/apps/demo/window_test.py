@@ -657,7 +657,7 @@ class Camera(WindowCase):
         window.pointer(100, 120)
         window.tool("mousedown", 2)
         for step in range(1, 100):
-            window.pointer(100 + step % 60, 120)
+            window.pointer(100 + min(step, 60), 120)
             if window.last()["eye"][0] < before[0] - 0.05:  # the scene follows the hand to the right
                 break
             time.sleep(0.05)
