@@ -12,6 +12,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,7 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string first_word(std::string text) { return text.substr(0, text.find_first_of(" \n")); }
+std::string first_word(const std::string& text) { return text.substr(0, text.find_first_of(" \n")); }
 
 /// When a process began, in ticks since the machine did; empty where there is none, or only what is left of one.
 std::string start_of(const std::string& process) {
@@ -186,8 +187,8 @@ Claims::Claim Claims::wait_for(const std::string& name) {
 
 void Claims::work(int count, const std::function<std::string(int)>& name, const std::function<bool(int)>& is_done,
                   const std::function<void(int)>& piece) {
-  std::vector<int> open;
-  for (int k = 0; k < count; ++k) open.push_back(k);
+  std::vector<int> open(size_t(std::max(count, 0)));
+  std::iota(open.begin(), open.end(), 0);
   for (bool did_one = true; !open.empty(); did_one = false) {
     const auto finished = [&](int k) {
       if (is_done(k)) return true;

@@ -180,6 +180,7 @@ void run_ranks_in_threads(int count, const std::function<void(const Ranks& ranks
   PostOffice office(count);
   std::exception_ptr first;
   std::vector<std::thread> threads;
+  threads.reserve(size_t(count));
   for (int rank = 0; rank < count; ++rank) {
     threads.emplace_back([&, rank] {
       try {

@@ -48,8 +48,8 @@ Header header_of(const BounceState& s, size_t records) {
   const glm::dvec3 values[4] = {s.before, s.residual, s.of.emission, s.of.punctual};
   for (int band = 0; band < 3; ++band) {
     h.sent_left[size_t(band)] = s.report.sent[band];
-    h.sent_left[size_t(3 + band)] = s.report.left[band];
-    for (int i = 0; i < 4; ++i) h.numbers[size_t(3 * i + band)] = values[i][band];
+    h.sent_left[3 + size_t(band)] = s.report.left[band];
+    for (int i = 0; i < 4; ++i) h.numbers[3 * size_t(i) + size_t(band)] = values[i][band];
     h.cells[size_t(band)] = s.of.cells[band];
   }
   return h;
@@ -67,8 +67,8 @@ BounceState state_of(const Header& h) {
   glm::dvec3* const values[4] = {&s.before, &s.residual, &s.of.emission, &s.of.punctual};
   for (int band = 0; band < 3; ++band) {
     s.report.sent[band] = h.sent_left[size_t(band)];
-    s.report.left[band] = h.sent_left[size_t(3 + band)];
-    for (int i = 0; i < 4; ++i) (*values[i])[band] = h.numbers[size_t(3 * i + band)];
+    s.report.left[band] = h.sent_left[3 + size_t(band)];
+    for (int i = 0; i < 4; ++i) (*values[i])[band] = h.numbers[3 * size_t(i) + size_t(band)];
     s.of.cells[band] = h.cells[size_t(band)];
   }
   return s;

@@ -37,6 +37,7 @@ double round_trip_s(const Ranks& ranks, size_t bytes, int repeats) {
     ranks.wait_any(one);
   };
   std::vector<double> times;
+  times.reserve(size_t(repeats));
   for (int i = 0; i < repeats; ++i) {
     times.push_back(1e-3 * time_ms([&] {
                       if (rank == 0) {

@@ -150,6 +150,7 @@ void execute(VolumeViewer& viewer, std::string_view line) {
     if (name == command.name) return command.run(viewer, arguments);
   }
   std::vector<std::string_view> names;
+  names.reserve(std::size(COMMANDS));
   for (const VolumeCommand& command : COMMANDS) names.emplace_back(command.name);
   misused(fmt::format("no command '{}' for a volume; there are {}", name, fmt::join(names, ", ")));
 }

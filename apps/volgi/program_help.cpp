@@ -138,7 +138,8 @@ std::string bash_cases(const CLI::App& command, const std::string& name) {
     all += fmt::format("{}{}", all.empty() || names.empty() ? "" : " ", fmt::join(names, " "));
     if (names.empty() || !takes_value(*option)) continue;
     std::vector<std::string> patterns;
-    for (const std::string& each : names) patterns.push_back(name + ":" + each);
+    patterns.reserve(names.size());
+    for (const std::string& each : names) patterns.push_back(fmt::format("{}:{}", name, each));
     const std::vector<std::string> choices = choices_of(*option);
     // What is not listed may be a file's name: bash's own completion goes on.
     cases += fmt::format("    {})\n      COMPREPLY=({})\n      return\n      ;;\n", fmt::join(patterns, " | "),
@@ -148,7 +149,7 @@ std::string bash_cases(const CLI::App& command, const std::string& name) {
 }
 
 std::string bash_completion(const CLI::App& program, const Programs& commands) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   std::string function = "_" + name;
   std::replace(function.begin(), function.end(), '-', '_');
   std::vector<std::string> names;
@@ -207,7 +208,7 @@ std::string zsh_arguments(const CLI::App& command, const char* indent) {
 }
 
 std::string zsh_completion(const CLI::App& program, const Programs& commands) {
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   std::string text = fmt::format("#compdef {}\n# from its option tables\n", name);
   if (commands.empty()) return text + zsh_arguments(program, "  ");
   text += "local -a commands\ncommands=(\n";
@@ -228,7 +229,7 @@ std::string zsh_completion(const CLI::App& program, const Programs& commands) {
 
 void write_program_help(const CLI::App& program, const std::string& version, const fs::path& folder) {
   const Programs commands = commands_of(program);
-  const std::string name = program.get_name();
+  const std::string& name = program.get_name();
   write_text(folder / "man1" / (name + ".1"), manual_page(program, name, version, commands, ""));
   for (const CLI::App* command : commands) {
     const std::string whole = name + "-" + command->get_name();
