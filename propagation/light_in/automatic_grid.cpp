@@ -22,6 +22,7 @@ struct FirstSurfaces {
   std::vector<LitPoint> points;
   std::vector<Flight> flights;
   double area_m2 = 0.0;  // SceneFacts::lit_area_m2
+  int lamps = 0;         // SceneFacts::lamps
 };
 
 /// (sum of power)^2 over the sum of power^2 per area: of N alike lights the sum of their areas.
@@ -53,7 +54,10 @@ FirstSurfaces first_surfaces(const Scene& scene) {
   if (scene.lights.empty() && emitters.empty()) return {};
   const EmbreeScene embree(scene);
   const VirtualLightsCpu lights = virtual_lights_cpu(embree, emitters, LIGHTS, true);
-  FirstSurfaces first{{}, flights(embree, {lights.lights, lights.reflected, {}, 0}, RAYS), lit_area(lights.lights)};
+  FirstSurfaces first{{},
+                      flights(embree, {lights.lights, lights.reflected, {}, 0}, RAYS),
+                      lit_area(lights.lights),
+                      int(scene.lights.size()) + (emitters.empty() ? 0 : 1)};
   for (const shared::VirtualLight& l : lights.lights) {
     if (l.flux != glm::vec3(0.0f)) first.points.push_back({l.position, l.normal});
   }
@@ -88,7 +92,7 @@ SceneFacts scene_facts(const Scene& scene, const std::optional<GridBox>& box, st
   facts.feature_m = shortest(first.flights, SHORT_FLIGHTS);
   facts.flight_m = shortest(first.flights, 0.5);
   facts.lit_area_m2 = float(first.area_m2);
-  facts.lamps = int(scene.lights.size()) + (EmitterPoints(scene).empty() ? 0 : 1);
+  facts.lamps = first.lamps;
   return facts;
 }
 

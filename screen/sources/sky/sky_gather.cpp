@@ -30,6 +30,7 @@ void SkyGather::gather(const WorkList& list, int step_px, std::span<const gl::Te
   list.bind(PIXEL_LIST_SLOT);
   irradiance[0].bind_image(SKY_IRRADIANCE_IMAGE, GL_READ_WRITE);
   program_.set("subsets", SUBSETS);
+  program_.set("step_px", step_px);
   program_.set("takers", step_px <= 2 ? 2 : 1);
   for (int subset = 0; subset < SUBSETS; ++subset) {
     program_.set("subset", subset);

@@ -11,14 +11,18 @@ layout(std430, binding = PIXEL_LIST_SLOT) readonly buffer PixelList { WorkListHe
 layout(binding = SKY_IRRADIANCE_IMAGE, rgba32f) uniform image2D irradiance;
 uniform int subset;
 uniform int subsets;
-uniform int takers;  // 2: pixels beside one another share the parts
+uniform int takers;   // 2: pixels beside one another on the grid share the parts
+uniform int step_px;  // of that grid
 
 void main() {
   int index = int(global_index());
   if (index >= int(head.count)) return;
   ivec2 pixel = unpack_pixel(listed[index]);
   vec4 normals = texelFetch(normal_map, pixel, 0);
-  int first = subset * takers + ((pixel.x ^ pixel.y) & (takers - 1));
+  // New pixels of a grid are odd along one axis or both: what lies two steps off is beside them as well.
+  ivec2 at = pixel / step_px;
+  int taker = (at.x ^ at.y ^ at.x >> 1 ^ at.y >> 1) & (takers - 1);
+  int first = subset * takers + taker;
   vec3 sum = float(takers) * sky_irradiance(first, subsets * takers, texelFetch(position_map, pixel, 0).xyz,
                                             octahedral_decode(normals.xy), octahedral_decode(normals.zw));
   if (subset > 0) sum += imageLoad(irradiance, pixel).rgb;
