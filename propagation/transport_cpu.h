@@ -5,6 +5,7 @@
 
 #include "core/sky.h"
 #include "propagation/bounce_rules.h"
+#include "propagation/passage_face.h"
 #include "propagation/radiance_volume.h"
 #include "propagation/scheme.h"
 #include "voxel/side_halo.h"
@@ -22,6 +23,10 @@ class TransportCpu {
   /// From the next begin() on, a sky's light streams in at the grid's rim; null: it is black outside. A scheme without
   /// directions of its own knows no sky.
   virtual void stream_in(const Sky* /*sky*/) {}
+  /// From the next begin() on, light goes through these faces, none of which has a side, as through gaps of another
+  /// width than cells show. A scheme without a sweep takes no notice.
+  /// @param faces  ascending by cell (x fastest) and axis.
+  virtual void set_passages([[maybe_unused]] std::span<const PassageFace> faces) {}
   /// Carries the order on, by at most `max_passes` passes over the volume.
   /// @param received  power per side (rgb) [W], added to; w stays.
   /// @param report    passes are added, and, when the order ends, the power that was left in flight.

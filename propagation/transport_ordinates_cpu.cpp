@@ -10,6 +10,7 @@
 #include <cassert>
 #include <cstring>
 #include <glm/gtc/constants.hpp>
+#include <map>
 #include <numeric>
 
 #include "propagation/rim_inflow.h"
@@ -112,23 +113,64 @@ bool any_light(const float* values, size_t count) {
   return false;
 }
 
-/// Sides of a block as the kernels want them; those of a cell follow each other in `side`.
-sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, std::vector<std::uint32_t>& side) {
+constexpr std::uint32_t kNoSide = 0xffffffffu;
+
+/// What a block of cells has on its faces beside sides: factors of passages by cell and face.
+using PassagesOfBlock = std::map<int, std::array<float, 6>>;  // by leaf_offset; 1: none
+
+void add_passage(const Grid& grid, glm::ivec3 cell, int face, float factor, std::map<int, PassagesOfBlock>& blocks) {
+  const int block = block_index(leaf_blocks(grid), cell >> kLeafShift);
+  auto [of_cell, is_new] = blocks[block].try_emplace(leaf_offset(cell));
+  if (is_new) of_cell->second.fill(1.0f);
+  of_cell->second[size_t(face)] = factor;
+}
+
+std::map<int, PassagesOfBlock> passages_by_block(const VoxelGrid& voxels, std::span<const PassageFace> passages) {
+  std::map<int, PassagesOfBlock> blocks;
+  for (const PassageFace& p : passages) {
+    const int face = 2 * p.axis + 1;
+    add_passage(voxels.grid(), p.cell, face, p.factor, blocks);
+    add_passage(voxels.grid(), p.cell + shared::face_step(face), face - 1, p.factor, blocks);
+  }
+  return blocks;
+}
+
+/// Faces with sides in a block's order, as the kernels want them.
+struct PackedSides {
+  std::vector<std::uint32_t>& number;  // in the voxels, or kNoSide
+  std::vector<float>& passes;          // 1 - tau
+};
+
+/// Sides of a block as the kernels want them; those of a cell follow each other.
+sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, const PassagesOfBlock& passages,
+                             PackedSides packed_sides) {
   sweep::BlockSides packed{};
-  packed.first_side = std::uint32_t(side.size());
-  const std::int64_t* cells = voxels.leaf(block)->buffer().data();
+  packed.first_side = std::uint32_t(packed_sides.number.size());
+  const VoxelGrid::Leaf* leaf = voxels.leaf(block);
   const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels.grid().cells - kBlockCells * block);
   for (int z = 0; z < extent.z; ++z) {
     for (int y = 0; y < extent.y; ++y) {
       for (int x = 0; x < extent.x; ++x) {
-        const glm::uvec2 cell = VoxelGrid::unpack(cells[leaf_offset({x, y, z})]);
-        const std::uint32_t faces = cell.y & 63u;
+        const int offset = leaf_offset({x, y, z});
+        const glm::uvec2 cell = leaf != nullptr ? VoxelGrid::unpack(leaf->buffer().data()[offset]) : glm::uvec2(0);
+        const auto passage = passages.find(offset);
+        std::uint32_t faces = cell.y & 63u;
+        for (int f = 0; f < 6 && passage != passages.end(); ++f)
+          faces |= passage->second[size_t(f)] != 1.0f ? 1u << f : 0u;
         if (faces == 0) continue;
         const int row = z * kBlockCells + y;
-        packed.cells[row * kBlockCells + x] = sweep::pack_cell(faces, std::uint32_t(side.size()) - packed.first_side);
+        packed.cells[row * kBlockCells + x] =
+            sweep::pack_cell(faces, std::uint32_t(packed_sides.number.size()) - packed.first_side);
         packed.rows[0][row] |= static_cast<unsigned char>(1u << x);
         packed.rows[1][row] |= static_cast<unsigned char>(1u << (extent.x - 1 - x));
-        for (std::uint32_t i = 0; i < shared::count_bits(faces); ++i) side.push_back(cell.x + i);
+        for (int f = 0; f < 6; ++f) {
+          if (((faces >> f) & 1u) == 0) continue;
+          const bool is_side = shared::has_side(cell, f);
+          const std::uint32_t side = is_side ? shared::side_index(cell, f) : kNoSide;
+          packed_sides.number.push_back(side);
+          packed_sides.passes.push_back(is_side ? 1.0f - std::min(voxels.sides()[side].coverage, 1.0f)
+                                                : passage->second[size_t(f)]);
+        }
       }
     }
   }
@@ -199,25 +241,35 @@ OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateCh
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
       batches_(make_batches(choice, voxels.grid().cell_size_m)),
       pipeline_(ranks, voxels.part(), face_floats(), many_flows) {
-  pack_sides();
+  pack_sides({});
 }
 
-void OrdinatesTransportCpu::pack_sides() {
+void OrdinatesTransportCpu::set_passages(std::span<const PassageFace> faces) {
+  if (!faces.empty() || side_.size() != voxels_.side_count()) pack_sides(faces);
+}
+
+void OrdinatesTransportCpu::pack_sides(std::span<const PassageFace> passages) {
   const BlockBox& part = voxels_.part();
+  const std::map<int, PassagesOfBlock> of_blocks = passages_by_block(voxels_, passages);
+  std::vector<float> passes;
   sides_of_block_.assign(part.count(), -1);
+  block_sides_.clear();
+  side_.clear();
   side_.reserve(voxels_.side_count());
+  passes.reserve(voxels_.side_count());
   for (size_t i = 0; i < sides_of_block_.size(); ++i) {
-    if (voxels_.leaf(part.block(i)) == nullptr) continue;
+    const glm::ivec3 block = part.block(i);
+    const auto there = of_blocks.find(block_index(voxels_.blocks(), block));
+    if (voxels_.leaf(block) == nullptr && there == of_blocks.end()) continue;
     sides_of_block_[i] = int(block_sides_.size());
-    block_sides_.push_back(pack_block(voxels_, part.block(i), side_));
+    block_sides_.push_back(
+        pack_block(voxels_, block, there != of_blocks.end() ? there->second : PassagesOfBlock{}, {side_, passes}));
   }
-  assert(side_.size() == voxels_.side_count());
+  assert(side_.size() >= voxels_.side_count());
   sends_.resize(block_sides_.size());
-  sent_.resize(side_.size());
-  for (size_t i = 0; i < side_.size(); ++i) {
-    sent_[i].w = 1.0f - std::min(voxels_.sides()[side_[i]].coverage, 1.0f);  // constant
-  }
-  arrived_.resize(4 * side_.size());
+  sent_.assign(side_.size(), glm::vec4(0.0f));
+  for (size_t i = 0; i < side_.size(); ++i) sent_[i].w = passes[i];  // constant
+  arrived_.assign(4 * side_.size(), glm::vec4(0.0f));
 }
 
 void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
@@ -227,6 +279,7 @@ void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
     const size_t last = b + 1 < block_sides_.size() ? block_sides_[b + 1].first_side : side_.size();
     bool sends = false;
     for (size_t i = first; i < last; ++i) {
+      if (side_[i] == kNoSide) continue;
       sent_[i] = glm::vec4(glm::vec3(sent[side_[i]]), sent_[i].w);
       sends = sends || glm::vec3(sent_[i]) != glm::vec3(0.0f);
     }
@@ -287,8 +340,10 @@ void OrdinatesTransportCpu::add_arrived(std::span<glm::vec4> received) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, side_.size(), 4096), [&](const tbb::blocked_range<size_t>& sides) {
     for (size_t i = sides.begin(); i < sides.end(); ++i) {
       glm::vec4* a = &arrived_[4 * i];
-      glm::vec4& r = received[side_[i]];
-      r = glm::vec4(glm::vec3(r) + (1.0f - sent_[i].w) * glm::vec3((a[0] + a[1]) + (a[2] + a[3])), r.w);
+      if (side_[i] != kNoSide) {
+        glm::vec4& r = received[side_[i]];
+        r = glm::vec4(glm::vec3(r) + (1.0f - sent_[i].w) * glm::vec3((a[0] + a[1]) + (a[2] + a[3])), r.w);
+      }
       std::fill(a, a + 4, glm::vec4(0.0f));
     }
   });

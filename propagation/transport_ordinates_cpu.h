@@ -36,6 +36,7 @@ class OrdinatesTransportCpu : public TransportCpu {
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
+  void set_passages(std::span<const PassageFace> faces) override;
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return false; }
   bool linear() const override { return true; }
@@ -53,7 +54,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   using Floats = std::vector<float, tbb::cache_aligned_allocator<float>>;
   struct RadianceLeaves;
 
-  void pack_sides();
+  void pack_sides(std::span<const PassageFace> passages);
   void make_inflow(const Sky& sky);
   void fill_rim(SweepPipeline::Task task, int axis);
   void sweep(bool in_order, RadianceLeaves* leaves);
@@ -79,6 +80,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
   bool streams_in_ = false;
   // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
+  // Faces of passages are packed as sides, too, that send nothing and keep nothing: kNoSide.
   std::vector<sweep::BlockSides> block_sides_;
   std::vector<int> sides_of_block_;   // of the part: index into block_sides_, or -1
   std::vector<unsigned char> sends_;  // by block_sides_: whether any side of the block sends

@@ -135,6 +135,7 @@ void VolumeCpu::voxelize() {
   const bool only_sides_count = (!moved || !(coarse || papers)) && !std::exchange(shifted_, false);
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
+  passages_are_old_ = true;
   if (ranks_) halo_.emplace(*ranks_, voxels_);
   if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
   if (coarse && white) bound_white_pockets(half_voxels_);
@@ -149,6 +150,11 @@ void VolumeCpu::voxelize() {
       bounces_ = std::make_unique<BouncesCpu>(std::move(transport), ranks_ ? &ranks_->ranks : nullptr);
     }
   }
+}
+
+void VolumeCpu::set_passages(std::span<const PassageFace> faces) {
+  if (bounces_) bounces_->transport().set_passages(faces);
+  passages_are_old_ = false;
 }
 
 void VolumeCpu::light_in(SideFlux flux) {

@@ -40,6 +40,11 @@ class VolumeCpu {
   void voxelize();
   /// @param flux  of the sides of voxels().
   void light_in(SideFlux flux);
+  /// Before propagate(): gaps between rooms, as wide as they are (light_in/narrow_passages.h). Holds until cells
+  /// change.
+  void set_passages(std::span<const PassageFace> faces);
+  /// Whether cells have changed since set_passages().
+  bool passages_are_old() const { return passages_are_old_; }
   void propagate();
   void irradiate();
 
@@ -77,6 +82,7 @@ class VolumeCpu {
   BounceReport report_;
   size_t pocket_cells_ = 0;
   BounceCheckpoint* checkpoint_ = nullptr;
+  bool passages_are_old_ = true;
   bool moved_ = false, shifted_ = false;  // since the last voxelization
 };
 

@@ -25,18 +25,23 @@ class DiffusePath {
     const glm::vec3 normal =
         glm::dot(at.geometric_normal, direction_) < 0.0f ? at.geometric_normal : -at.geometric_normal;
     position_ = at.position;
+    albedo_ = at.albedo;
     origin_ = embree_.leaving_point(at.position, direction_, hit_.distance);
     // A point of the sphere around the normal's end is cosine-distributed.
     const glm::vec3 next = normal + 0.999f * even_direction(k_ * 7919u + surfaces_++ * 104729u + 1u);
     direction_ = glm::normalize(next);
     return true;
   }
+  /// From where it goes on, and where to.
+  glm::vec3 origin() const { return origin_; }
+  glm::vec3 direction() const { return direction_; }
   const RayHit& hit() const { return hit_; }
   glm::vec3 position() const { return position_; }
+  glm::vec3 albedo() const { return albedo_; }
 
  private:
   const EmbreeScene& embree_;
-  glm::vec3 origin_, direction_, position_{0.0f};
+  glm::vec3 origin_, direction_, position_{0.0f}, albedo_{0.0f};
   std::uint32_t k_, surfaces_ = 0;
   RayHit hit_;
 };

@@ -29,6 +29,11 @@ void DirectLightCpu::scene_moved() {
   if (!scene_.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene_);
 }
 
+const EmbreeScene& DirectLightCpu::embree() const {
+  if (!embree_) embree_ = std::make_unique<EmbreeScene>(scene_);
+  return *embree_;
+}
+
 SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
   SideFlux flux;
   flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
@@ -36,7 +41,8 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
   const std::vector<FluxSample> pieces = emitter_pieces(scene_, voxels.grid());
   flux.emits = !pieces.empty();
   deposit(voxels, pieces, flux.emitted, flux.lost);
-  if (embree_) deposit(voxels, light_flux(*embree_, light_texels(voxels.grid())), flux.punctual, flux.lost);
+  if (!scene_.lights.empty())
+    deposit(voxels, light_flux(*embree_, light_texels(voxels.grid())), flux.punctual, flux.lost);
   return flux;
 }
 
@@ -50,7 +56,7 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels, const RanksOfVolume& rank
   std::vector<NumberedFluxSample> shared_out;
   for (size_t i = rank; i < pieces.size(); i += count) shared_out.push_back({pieces[i], i});
   deposit(voxels, ranks, shared_out, flux.emitted, flux.lost);
-  if (embree_) {
+  if (!scene_.lights.empty()) {
     const auto lit = light_flux(*embree_, light_texels(voxels.grid()), int(rank), int(count));
     deposit(voxels, ranks, lit, flux.punctual, flux.lost);
   }

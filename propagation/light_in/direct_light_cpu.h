@@ -22,10 +22,12 @@ class DirectLightCpu {
   SideFlux flux(const VoxelGrid& voxels) const;
   /// All ranks, the rays shared out; each has the whole scene's tree.
   SideFlux flux(const VoxelGrid& voxels, const RanksOfVolume& ranks) const;
+  /// Of the scene, made when it is asked for where there are no punctual lights.
+  const EmbreeScene& embree() const;
 
  private:
   const Scene& scene_;
-  std::unique_ptr<EmbreeScene> embree_;  // none without punctual lights
+  mutable std::unique_ptr<EmbreeScene> embree_;  // none without punctual lights, until embree()
 };
 
 /// Direct light of a volume, or of a rank's part of one.

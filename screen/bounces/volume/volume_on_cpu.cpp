@@ -5,6 +5,7 @@
 #include "core/gl/readback.h"
 #include "core/sample_sequence.h"
 #include "propagation/light_in/direct_light_cpu.h"
+#include "propagation/light_in/narrow_passages.h"
 #include "propagation/light_in/reflected_flux_cpu.h"
 #include "propagation/light_in/side_sky_cpu.h"
 #include "propagation/radiance_volume_gl.h"
@@ -19,13 +20,16 @@ namespace volgi::screen {
 namespace {
 
 /// The stages that come before pixels, each under a timer. @param light  of the volume's sides, as SideFlux.
+/// @param embree  of the scene, for gaps between its rooms; null: they are as wide as cells show them.
 template <class Light>
-void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const Light& light) {
+void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const EmbreeScene* embree, const Light& light) {
   const auto stage = [&](const char* name, const auto& run) {
     auto scope = timer.scope(name);
     run();
   };
   stage("voxel/voxelize_cpu", [&] { volume.voxelize(); });
+  if (embree != nullptr && volume.passages_are_old())
+    stage("propagation/narrow_passages", [&] { volume.set_passages(narrow_passages(volume.voxels(), *embree)); });
   stage("propagation/light_in_cpu", [&] { volume.light_in(light(volume.voxels())); });
   stage("propagation/propagate_cpu", [&] { volume.propagate(); });
   stage("propagation/side_irradiance_cpu", [&] { volume.irradiate(); });
@@ -151,7 +155,8 @@ class SidesOnCpu : public FrameVolume {
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
     radiance_is_new_ = false;
-    run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
+    run_stages(volume_, timer, rays_for_passages(),
+               [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
     if (!sides_on_gpu()) {
       voxels_.grid = volume_.grid();
       gather_.run_on_cpu(gbuffer, camera, volume_.voxels(), volume_.irradiance(),
@@ -217,6 +222,10 @@ class SidesOnCpu : public FrameVolume {
       direct_light_.emplace(scene_);
     }
   }
+  const EmbreeScene* rays_for_passages() const {
+    if (options_.scheme.scheme != Scheme::ordinates) return nullptr;
+    return after_first_bounce() ? embree_.get() : &direct_light_->embree();
+  }
   SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
@@ -268,7 +277,7 @@ class PulseOnCpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
-    run_stages(volume_, timer, [&](const VoxelGrid& voxels) { return direct_light_.flux(voxels); });
+    run_stages(volume_, timer, nullptr, [&](const VoxelGrid& voxels) { return direct_light_.flux(voxels); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       upload_radiance(volume_.radiance(), radiance_);

@@ -1,0 +1,408 @@
+#include "propagation/light_in/narrow_passages.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/visibility/diffuse_path_internal.h"
+#include "core/visibility/even_direction_internal.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr float OPEN_COVERAGE = 0.5f;
+constexpr int HALF_WIDTH = 4;                   // of the widest passage, in cells
+constexpr int WAY = 6;                          // cells from a passage to where paths end, at least
+constexpr size_t MOST_CELLS = size_t(1) << 23;  // 6 bytes each while it looks; gaps of large grids are many cells wide
+constexpr int NEAR = 4;                         // cells between parts of one passage, at most
+constexpr int ROUNDS = 1;
+constexpr size_t PATHS = 1 << 15, PATHS_AT_ONCE = 1 << 11;
+constexpr size_t FEWEST_PASS = 64;  // paths, for a factor to mean anything
+constexpr float LARGEST_FACTOR = 4.0f;
+
+/// By cell, x fastest, a bit for each face that lets light on into another cell.
+std::vector<unsigned char> free_faces(const VoxelGrid& voxels) {
+  constexpr unsigned all = 63;
+  const glm::ivec3 n = voxels.grid().cells;
+  std::vector<unsigned char> faces(cell_count(voxels.grid()), static_cast<unsigned char>(all));
+  for (int z = 0; z < n.z; ++z) {
+    for (int y = 0; y < n.y; ++y) {
+      unsigned char* row = &faces[size_t(shared::cell_index(voxels.grid(), {0, y, z}))];
+      const unsigned shut =
+          (y == 0 ? 4u : 0u) | (y == n.y - 1 ? 8u : 0u) | (z == 0 ? 16u : 0u) | (z == n.z - 1 ? 32u : 0u);
+      for (int x = 0; x < n.x && shut != 0; ++x) row[x] &= static_cast<unsigned char>(~shut);
+      row[0] &= static_cast<unsigned char>(~1u);
+      row[n.x - 1] &= static_cast<unsigned char>(~2u);
+    }
+  }
+  for (const shared::Side& side : voxels.sides()) {
+    if (side.coverage >= OPEN_COVERAGE) faces[size_t(side.cell)] &= static_cast<unsigned char>(~(1u << side.face));
+  }
+  return faces;
+}
+
+/// Cells that light goes between, and the rooms that they make.
+class Rooms {
+ public:
+  explicit Rooms(const VoxelGrid& voxels) : free_(free_faces(voxels)) {
+    const glm::ivec3 n = voxels.grid().cells;
+    for (int face = 0; face < 6; ++face)
+      step_[face] = (face & 1 ? 1 : -1) * (face < 2 ? 1 : face < 4 ? n.x : n.x * n.y);
+    measure_distances(voxels);
+    room_of_.assign(free_.size(), NONE);
+    for (size_t i = 0; i < room_of_.size(); ++i) {
+      if (from_walls_[i] > HALF_WIDTH && room_of_[i] == NONE) find_core(int(i));
+    }
+    if (count_ > 1) grow();
+  }
+  int count() const { return count_; }
+  /// Of a cell; below 0: in none.
+  int of(int cell) const { return room_of_[size_t(cell)]; }
+  /// Steps through free faces to a cell beside a wall, and one: HALF_WIDTH + 1 at most.
+  int from_walls(int cell) const { return from_walls_[size_t(cell)]; }
+  size_t cells() const { return room_of_.size(); }
+  /// The cell beyond a free face, or -1.
+  int beyond(int cell, int face) const { return ((free_[size_t(cell)] >> face) & 1) != 0 ? cell + step_[face] : -1; }
+
+ private:
+  static constexpr int NONE = -1, TOO_SMALL = -2;
+
+  template <class Visit>
+  void for_free_neighbours(int cell, const Visit& visit) const {
+    for (unsigned faces = free_[size_t(cell)]; faces != 0; faces &= faces - 1)
+      visit(cell + step_[__builtin_ctz(faces)]);
+  }
+
+  void measure_distances(const VoxelGrid& voxels) {
+    from_walls_.assign(free_.size(), HALF_WIDTH + 1);
+    std::vector<int> ring, next_ring;
+    for (const shared::Side& side : voxels.sides()) {
+      unsigned char& distance = from_walls_[size_t(side.cell)];
+      if (side.coverage < OPEN_COVERAGE || distance == 1) continue;
+      distance = 1;
+      ring.push_back(side.cell);
+    }
+    for (int d = 2; d <= HALF_WIDTH; ++d) {
+      next_ring.clear();
+      for (const int cell : ring) {
+        for_free_neighbours(cell, [&](int next) {
+          if (from_walls_[size_t(next)] <= d) return;
+          from_walls_[size_t(next)] = static_cast<unsigned char>(d);
+          next_ring.push_back(next);
+        });
+      }
+      ring.swap(next_ring);
+    }
+  }
+
+  /// What is far from all walls, one piece after the other.
+  void find_core(int first) {
+    std::vector<int> cells{first};
+    room_of_[size_t(first)] = count_;
+    for (size_t k = 0; k < cells.size(); ++k) {
+      for_free_neighbours(cells[k], [&](int next) {
+        if (from_walls_[size_t(next)] <= HALF_WIDTH || room_of_[size_t(next)] != NONE) return;
+        room_of_[size_t(next)] = count_;
+        cells.push_back(next);
+      });
+    }
+    if (cells.size() >= size_t(PASSAGE_LEAST_ROOM)) {
+      ++count_;
+    } else {
+      for (const int cell : cells) room_of_[size_t(cell)] = TOO_SMALL;
+    }
+  }
+
+  /// Wide places first: a watershed.
+  void grow() {
+    std::array<std::vector<int>, HALF_WIDTH + 2> edge;  // by distance from walls
+    for (size_t i = 0; i < room_of_.size(); ++i) {
+      if (room_of_[i] >= 0) edge[HALF_WIDTH + 1].push_back(int(i));
+    }
+    for (size_t level = edge.size(); level-- > 1;) {
+      for (size_t k = 0; k < edge[level].size(); ++k) {
+        const int cell = edge[level][k];
+        for_free_neighbours(cell, [&](int next) {
+          if (room_of_[size_t(next)] >= 0) return;
+          room_of_[size_t(next)] = room_of_[size_t(cell)];
+          edge[std::min(size_t(from_walls_[size_t(next)]), level)].push_back(next);
+        });
+      }
+    }
+  }
+
+  std::vector<unsigned char> free_;
+  std::array<int, 6> step_{};  // from a cell's number to that beyond a face
+  std::vector<unsigned char> from_walls_;
+  std::vector<int> room_of_;
+  int count_ = 0;
+};
+
+/// A free face: the cell below it, and its axis.
+using Face = std::pair<int, int>;
+
+struct Passage {
+  std::pair<int, int> rooms;
+  std::vector<Face> faces;  // ascending
+};
+
+/// Between cells of two rooms. A face that stops a part of light has a side, and that part right.
+std::map<std::pair<int, int>, std::vector<Face>> faces_by_rooms(const VoxelGrid& voxels, const Rooms& rooms) {
+  std::map<std::pair<int, int>, std::vector<Face>> faces;
+  for (int cell = 0; cell < int(rooms.cells()); ++cell) {
+    const int room = rooms.of(cell);
+    for (int axis = 0; axis < 3 && room >= 0; ++axis) {
+      const int next = rooms.beyond(cell, 2 * axis + 1), other = next >= 0 ? rooms.of(next) : -1;
+      if (other < 0 || other == room) continue;
+      const glm::uvec2 sides = voxels.cell_sides(shared::cell_coord(voxels.grid(), cell));
+      if (!shared::has_side(sides, 2 * axis + 1)) faces[std::minmax(room, other)].push_back({cell, axis});
+    }
+  }
+  return faces;
+}
+
+/// Of the faces between two rooms those belong together whose cells are near each other.
+std::vector<std::vector<Face>> connected(const Grid& grid, const std::vector<Face>& faces) {
+  std::map<int, std::vector<size_t>> at;
+  for (size_t i = 0; i < faces.size(); ++i) at[faces[i].first].push_back(i);
+  std::vector<bool> taken(faces.size());
+  std::vector<std::vector<Face>> groups;
+  constexpr int wide = 2 * NEAR + 1;
+  for (size_t first = 0; first < faces.size(); ++first) {
+    if (taken[first]) continue;
+    std::vector<size_t> met{first};
+    taken[first] = true;
+    groups.emplace_back();
+    for (size_t k = 0; k < met.size(); ++k) {
+      groups.back().push_back(faces[met[k]]);
+      const glm::ivec3 cell = shared::cell_coord(grid, faces[met[k]].first);
+      for (int n = 0; n < wide * wide * wide; ++n) {
+        const glm::ivec3 near = cell + glm::ivec3(n % wide, n / wide % wide, n / wide / wide) - NEAR;
+        if (!shared::cell_inside(grid, near)) continue;
+        const auto there = at.find(shared::cell_index(grid, near));
+        if (there == at.end()) continue;
+        for (const size_t i : there->second) {
+          if (!taken[i]) met.push_back(i);
+          taken[i] = true;
+        }
+      }
+    }
+  }
+  return groups;
+}
+
+std::vector<Passage> passages_between(const VoxelGrid& voxels, const Rooms& rooms) {
+  std::vector<Passage> passages;
+  for (const auto& [between, faces] : faces_by_rooms(voxels, rooms)) {
+    for (std::vector<Face>& group : connected(voxels.grid(), faces)) {
+      std::sort(group.begin(), group.end());
+      passages.push_back({between, std::move(group)});
+    }
+  }
+  return passages;
+}
+
+/// Paths of diffuse light around one passage: what of them gets from one room into another between triangles, and what
+/// in cells.
+class Paths {
+ public:
+  Paths(const VoxelGrid& voxels, const EmbreeScene& embree, const Rooms& rooms, const Passage& passage)
+      : voxels_(voxels), embree_(embree), rooms_(rooms), passage_(passage) {
+    const Grid& grid = voxels.grid();
+    low_ = grid.cells;
+    high_ = glm::ivec3(0);
+    for (const auto& [cell, axis] : passage.faces) {
+      const glm::ivec3 at = shared::cell_coord(grid, cell);
+      low_ = glm::min(low_, at - WAY);
+      high_ = glm::max(high_, at + WAY + 1);
+    }
+    low_ = glm::max(low_, 0);
+    high_ = glm::min(high_, grid.cells);
+    find_starts();
+  }
+
+  /// That makes cells let through what triangles do; 1 where too few paths pass to tell.
+  float factor() const {
+    if (starts_.empty()) return 1.0f;
+    std::vector<Sums> sums(PATHS / PATHS_AT_ONCE);
+    tbb::parallel_for(size_t(0), sums.size(), [&](size_t part) {
+      for (size_t k = 0; k < PATHS_AT_ONCE; ++k) follow(std::uint32_t(part * PATHS_AT_ONCE + k), sums[part]);
+    });
+    Sums all;
+    for (const Sums& s : sums) all.add(s);
+    if (all.passed_in_cells < FEWEST_PASS) return 1.0f;
+    float low = 0.0f, high = LARGEST_FACTOR;
+    for (int i = 0; i < 24; ++i) {
+      const float middle = 0.5f * (low + high);
+      (all.in_cells(middle) < all.in_truth ? low : high) = middle;
+    }
+    return 0.5f * (low + high);
+  }
+
+ private:
+  static constexpr size_t MOST_CROSSED = 16;
+  static constexpr int MOST_SURFACES = 16;
+  struct Sums {
+    double in_truth = 0.0;
+    std::array<double, MOST_CROSSED> by_crossed{};  // in cells, by how many of the faces were crossed
+    size_t passed_in_cells = 0;
+
+    void add(const Sums& s) {
+      in_truth += s.in_truth;
+      for (size_t i = 0; i < MOST_CROSSED; ++i) by_crossed[i] += s.by_crossed[i];
+      passed_in_cells += s.passed_in_cells;
+    }
+    double in_cells(double factor) const {
+      double sum = 0.0, power = 1.0;
+      for (const double weight : by_crossed) {
+        sum += weight * power;
+        power *= factor;
+      }
+      return sum;
+    }
+  };
+
+  bool of_passage(int room) const { return room == passage_.rooms.first || room == passage_.rooms.second; }
+
+  /// Cells of its two rooms around the passage, not beside a wall, whose inside lies in the room for certain; and what
+  /// sides there return in the mean.
+  void find_starts() {
+    glm::ivec3 c;
+    for (c.z = low_.z; c.z < high_.z; ++c.z) {
+      for (c.y = low_.y; c.y < high_.y; ++c.y) {
+        for (c.x = low_.x; c.x < high_.x; ++c.x) {
+          const int cell = shared::cell_index(voxels_.grid(), c);
+          if (!of_passage(rooms_.of(cell))) continue;
+          if (rooms_.from_walls(cell) > 1) starts_.push_back(cell);
+        }
+      }
+    }
+  }
+
+  bool around(glm::vec3 point) const {
+    return glm::all(glm::greaterThanEqual(point, glm::vec3(low_))) && glm::all(glm::lessThan(point, glm::vec3(high_)));
+  }
+  /// Distance at which a ray from inside leaves the cells around.
+  float distance_out(glm::vec3 from, glm::vec3 way) const {
+    const glm::vec3 ahead = glm::mix(glm::vec3(low_), glm::vec3(high_), glm::greaterThan(way, glm::vec3(0.0f)));
+    const glm::vec3 t = (ahead - from) / way;
+    return std::max(0.0f, std::min({t.x, t.y, t.z}));
+  }
+  /// Of the cell, or of one beside it.
+  int room_near(glm::vec3 point) const {
+    const glm::ivec3 cell(glm::floor(point));
+    int found = -1;
+    for (int n = 0; n < 27; ++n) {
+      const glm::ivec3 at = n == 0 ? cell : cell + glm::ivec3(n % 3, n / 3 % 3, n / 9) - 1;
+      if (!shared::cell_inside(voxels_.grid(), at)) continue;
+      const int room = rooms_.of(shared::cell_index(voxels_.grid(), at));
+      if (n == 0 && room >= 0) return room;
+      if (found < 0) found = room;
+    }
+    return found;
+  }
+
+  void follow(std::uint32_t k, Sums& sums) const {
+    const glm::vec3 in_cell(float(3639409837u * k >> 8) * 0x1p-24f, float(2882110345u * k >> 8) * 0x1p-24f,
+                            float(2282420713u * k >> 8) * 0x1p-24f);
+    const int start = starts_[size_t(std::uint64_t(2654435769u * k) * starts_.size() >> 32)];
+    const glm::vec3 from = glm::vec3(shared::cell_coord(voxels_.grid(), start)) + in_cell;
+    const int room = rooms_.of(start);
+    sums.in_truth += passed_in_truth(from, room, k);
+    follow_cells(from, room, k, sums);
+  }
+
+  double passed_in_truth(glm::vec3 from, int room, std::uint32_t k) const {
+    const Grid& grid = voxels_.grid();
+    DiffusePath path(embree_, grid.origin + from * grid.cell_size_m, k);
+    double weight = 1.0;
+    for (int surface = 0; surface < MOST_SURFACES; ++surface) {
+      const glm::vec3 origin = shared::cell_from_world(grid, path.origin()), way = path.direction();
+      const float out = distance_out(origin, way);
+      if (!path.step() || path.hit().distance >= out * grid.cell_size_m) {
+        const int end = room_near(origin + std::max(out - 0.01f, 0.0f) * way);
+        return of_passage(end) && end != room ? weight : 0.0;
+      }
+      weight *= double(mean(path.albedo()));
+    }
+    return 0.0;
+  }
+
+  /// As sweeps do: sides return light by the cosine to their face.
+  void follow_cells(glm::vec3 from, int room, std::uint32_t k, Sums& sums) const {
+    const Grid& grid = voxels_.grid();
+    glm::vec3 at = from, way = even_direction(k);
+    glm::ivec3 cell(glm::floor(from));
+    double weight = 1.0;
+    size_t crossed = 0;
+    std::uint32_t surfaces = 0;
+    while (surfaces < std::uint32_t(MOST_SURFACES)) {
+      const glm::vec3 ahead(cell + glm::ivec3(glm::greaterThan(way, glm::vec3(0.0f))));
+      const glm::vec3 t = (ahead - at) / way;
+      const int axis = t.x <= t.y ? (t.x <= t.z ? 0 : 2) : (t.y <= t.z ? 1 : 2);
+      at += std::max(t[axis], 0.0f) * way;
+      at[axis] = ahead[axis];
+      const int face = 2 * axis + (way[axis] > 0.0f ? 1 : 0);
+      const glm::uvec2 sides = voxels_.cell_sides(cell);
+      if (shared::has_side(sides, face)) {
+        const shared::Side& side = voxels_.sides()[shared::side_index(sides, face)];
+        if (unit_hash(k * 16u + surfaces) < side.coverage) {
+          weight *= double(mean(shared::side_returned_fraction(side.albedo, side.area_m2, side.face_m2)));
+          const glm::vec3 normal = -glm::vec3(shared::face_step(face));
+          way = glm::normalize(normal + 0.999f * even_direction(k * 7919u + surfaces++ * 104729u + 1u));
+          continue;
+        }
+      }
+      const glm::ivec3 next = cell + shared::face_step(face);
+      if (!shared::cell_inside(grid, next)) return;
+      const int below = shared::cell_index(grid, (face & 1) != 0 ? cell : next);
+      if (std::binary_search(passage_.faces.begin(), passage_.faces.end(), Face(below, axis))) ++crossed;
+      if (glm::any(glm::lessThan(next, low_)) || glm::any(glm::greaterThanEqual(next, high_))) break;
+      cell = next;
+    }
+    const int end = rooms_.of(shared::cell_index(grid, cell));
+    if (surfaces == std::uint32_t(MOST_SURFACES) || !of_passage(end) || end == room) return;
+    sums.by_crossed[std::min(crossed, MOST_CROSSED - 1)] += weight;
+    ++sums.passed_in_cells;
+  }
+
+  static float mean(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
+  static float unit_hash(std::uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return float((x ^ (x >> 16)) >> 8) * 0x1p-24f;
+  }
+
+  const VoxelGrid& voxels_;
+  const EmbreeScene& embree_;
+  const Rooms& rooms_;
+  const Passage& passage_;
+  glm::ivec3 low_, high_;
+  std::vector<int> starts_;
+};
+
+}  // namespace
+
+std::vector<PassageFace> narrow_passages(const VoxelGrid& voxels, const EmbreeScene& embree) {
+  std::vector<PassageFace> all;
+  if (cell_count(voxels.grid()) > MOST_CELLS) return all;
+  const Rooms rooms(voxels);
+  if (rooms.count() < 2) return all;
+  std::vector<Passage> passages = passages_between(voxels, rooms);
+  for (const Passage& p : passages) {
+    const float factor = Paths(voxels, embree, rooms, p).factor();
+    for (const auto& [cell, axis] : p.faces) all.push_back({shared::cell_coord(voxels.grid(), cell), axis, factor});
+  }
+  std::sort(all.begin(), all.end(), [&](const PassageFace& a, const PassageFace& b) {
+    return std::pair(shared::cell_index(voxels.grid(), a.cell), a.axis) <
+           std::pair(shared::cell_index(voxels.grid(), b.cell), b.axis);
+  });
+  return all;
+}
+
+}  // namespace volgi
