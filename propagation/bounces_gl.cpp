@@ -133,7 +133,9 @@ void BouncesGl::orders(const Run& run, BounceReport& report) {
     BounceReport carried;
     request_sent(run.voxels);
     transport_->stream_in(arrival_of_emission ? run.sky : nullptr);
+    transport_->carry_sources(order <= (run.has_emission ? 1 : 0));
     transport_->carry(run.voxels, sent_, received_, order_rules, carried);
+    transport_->carry_sources(false);
     const glm::vec3 sent = pop_sent();
     report.passes += carried.passes;
     const bool dark = sent == glm::vec3(0.0f) && !arrival_of_emission;
@@ -158,7 +160,9 @@ void BouncesGl::arrival_of_emission(const Run& run, BounceReport& report) {
   next_order(run.voxels, received_indirect_, &run.flux.emitted(), false);
   request_sent(run.voxels);
   transport_->stream_in(run.sky);
+  transport_->carry_sources(true);
   transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  transport_->carry_sources(false);
   transport_->stream_in(nullptr);
   next_order(run.voxels, received_direct_, nullptr, false);
   report.orders += 1;
@@ -200,7 +204,9 @@ void BouncesGl::solve_conjugate(const Run& run, BounceReport& report) {
   if (run.has_emission) arrival_of_emission(run, report);
   solver_->set_source(run.voxels, powers(), run.flux.punctual());
   solver_->send_all(run.voxels, powers(), true);
+  transport_->carry_sources(true);
   transport_->carry(run.voxels, sent_, received_, run.rules, report);
+  transport_->carry_sources(false);
   report.orders += 1;
   solver_->start(run.voxels, powers());
   solver_->push_sums();

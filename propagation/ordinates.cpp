@@ -131,6 +131,12 @@ OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options) 
       options.ordinates.value_or(choice.directions < 48 || longest <= 48 ? Ordinates::step : Ordinates::characteristic);
   return choice;
 }
+std::optional<OrdinateChoice> choose_source_ordinates(glm::ivec3 cells, const SchemeOptions& options) {
+  const bool many =
+      options.source_directions && !options.directions && choose_ordinates(cells, options).directions == 128;
+  if (!many) return std::nullopt;
+  return OrdinateChoice{*options.source_directions, options.ordinates.value_or(Ordinates::characteristic)};
+}
 int directions_for_grid(glm::ivec3 cells) { return choose_ordinates(cells, SchemeOptions{}).directions; }
 
 }  // namespace volgi

@@ -1,5 +1,6 @@
 #pragma once
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "propagation/scheme.h"
@@ -52,6 +53,8 @@ struct OrdinateChoice {
 /// up to 16 cells; then characteristic, with 48 directions up to 32 cells and 128 above. Where only one of the two is
 /// requested, the other follows: characteristic with 48 directions or more, step with fewer.
 OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options);
+/// What carries the order of what sources send; none: the same as all orders (SchemeOptions::source_directions).
+std::optional<OrdinateChoice> choose_source_ordinates(glm::ivec3 cells, const SchemeOptions& options);
 
 /// The number of directions that suits a grid, where none is requested.
 int directions_for_grid(glm::ivec3 cells);

@@ -20,6 +20,8 @@ class TransportGl {
                      const BounceRules& rules, BounceReport& report) = 0;
   /// As TransportCpu::stream_in.
   virtual void stream_in(const Sky* /*sky*/) {}
+  /// As TransportCpu::carry_sources.
+  virtual void carry_sources(bool /*on*/) {}
   /// Radiance that `sent` (all orders together) makes in free space.
   virtual RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) = 0;
   /// Whether an order takes a number of passes that rules.iterations can set.

@@ -31,35 +31,38 @@ glm::ivec3 plane_texels(const Grid& grid, int lanes, int axis) {
 }  // namespace
 
 OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, const SchemeOptions& options)
-    : OrdinatesTransportGl(grid, choose_ordinates(grid.cells, options).directions,
-                           choose_ordinates(grid.cells, options).rule) {}
+    : OrdinatesTransportGl(grid, choose_ordinates(grid.cells, options), choose_source_ordinates(grid.cells, options)) {}
 
 OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, int directions, Ordinates rule)
+    : OrdinatesTransportGl(grid, {directions, rule}, std::nullopt) {}
+
+OrdinatesTransportGl::OrdinatesTransportGl(const Grid& grid, OrdinateChoice choice,
+                                           std::optional<OrdinateChoice> sources)
     : grid_(grid),
-      choice_{directions, rule},
-      lanes_(3 * quads_of(directions)),
+      choice_(choice),
+      lanes_(3 * quads_of(choice.directions)),
       prepare_(gl::Program::compute("propagation/prepare_sweep.comp.glsl")),
       collect_(gl::Program::compute("propagation/collect_octants.comp.glsl")),
-      shares_(pack_shares(ordinate_set(directions))),
-      inflow_(3 * 8 * size_t(lanes_) * sizeof(glm::vec4)) {
-  sweep_ = gl::Program::compute("propagation/sweep.comp.glsl",
-                                {fmt::format("QUADS {}", quads_of(directions)),
-                                 fmt::format("CHARACTERISTIC {}", int(rule == Ordinates::characteristic))});
+      all_(make_angles(choice)) {
+  if (sources) sources_ = make_angles(*sources);
   for (int axis = 0; axis < 3; ++axis)
     faces_[axis] = gl::Texture::make_3d(GL_RGBA32F, plane_texels(grid, lanes_, axis));
   cell_word_ = gl::Texture::make_3d(GL_R32UI, grid.cells);
   list_blocks();
 }
 
-/// QuadShares of sweep.comp.glsl.
-gl::Buffer OrdinatesTransportGl::pack_shares(const OrdinateSet& set) const {
-  const bool characteristic = choice_.rule == Ordinates::characteristic;
+namespace {
+
+/// QuadShares of sweep.comp.glsl, of the octant's directions from `first` on.
+gl::Buffer pack_shares(const OrdinateSet& set, Ordinates rule, size_t first, size_t quads) {
+  const bool characteristic = rule == Ordinates::characteristic;
   const size_t a_quad = characteristic ? 12 : 6;
-  std::vector<glm::vec4> shares(a_quad * size_t(lanes_ / 3), glm::vec4(0.0f));
-  for (size_t d = 0; d < set.directions.size(); ++d) {
-    const CellTransfer transfer = cell_transfer(choice_.rule, set.directions[d]);
-    const auto component = glm::length_t(d % 4);
-    glm::vec4* const quad = &shares[a_quad * (d / 4)];
+  std::vector<glm::vec4> shares(a_quad * quads, glm::vec4(0.0f));
+  for (size_t i = 0; i < 4 * quads && first + i < set.directions.size(); ++i) {
+    const size_t d = first + i;
+    const CellTransfer transfer = cell_transfer(rule, set.directions[d]);
+    const auto component = glm::length_t(i % 4);
+    glm::vec4* const quad = &shares[a_quad * (i / 4)];
     for (int a = 0; a < 3; ++a) {
       quad[a][component] = set.emitted_share(d)[a];
       if (!characteristic) quad[3 + a][component] = transfer.share[0][a];  // the same from every face
@@ -67,6 +70,22 @@ gl::Buffer OrdinatesTransportGl::pack_shares(const OrdinateSet& set) const {
     }
   }
   return gl::Buffer(shares);
+}
+
+}  // namespace
+
+OrdinatesTransportGl::Angles OrdinatesTransportGl::make_angles(OrdinateChoice choice) const {
+  const OrdinateSet set = ordinate_set(choice.directions);
+  const size_t quads = size_t(lanes_ / 3);
+  Angles angles{choice, {}, {}, {}, 0};
+  angles.sweep = gl::Program::compute(
+      "propagation/sweep.comp.glsl", {fmt::format("QUADS {}", quads),
+                                      fmt::format("CHARACTERISTIC {}", int(choice.rule == Ordinates::characteristic))});
+  for (size_t first = 0; first < set.directions.size(); first += 4 * quads) {
+    angles.shares.push_back(pack_shares(set, choice.rule, first, quads));
+    angles.inflow.emplace_back(3 * 8 * size_t(lanes_) * sizeof(glm::vec4));
+  }
+  return angles;
 }
 
 /// The blocks of every diagonal i+j+k beside each other.
@@ -104,40 +123,52 @@ void OrdinatesTransportGl::prepare(const VoxelGridGl& voxels, const gl::Buffer& 
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
+void OrdinatesTransportGl::carry_sources(bool on) { of_sources_ = on; }
+
 void OrdinatesTransportGl::stream_in(const Sky* sky) {
   streams_in_ = sky != nullptr;
-  if (sky == nullptr || sky->id() == inflow_of_) return;
-  inflow_of_ = sky->id();
-  const OrdinateSet set = ordinate_set(choice_.directions);
-  const std::vector<glm::vec3> flux = rim_inflow(*sky, set);
-  const size_t n = set.directions.size(), quads = size_t(lanes_ / 3);
-  std::vector<glm::vec4> values(8 * size_t(lanes_) * 3, glm::vec4(0.0f));
-  for (size_t octant = 0; octant < 8; ++octant) {
-    for (size_t d = 0; d < n; ++d) {
-      const glm::vec3 per_flux = inflow_per_flux(set, d, grid_.cell_size_m);
-      for (size_t band = 0; band < 3; ++band) {
-        const size_t lane = octant * size_t(lanes_) + band * quads + d / 4;
-        for (size_t axis = 0; axis < 3; ++axis)
-          values[3 * lane + axis][glm::length_t(d % 4)] =
-              per_flux[glm::length_t(axis)] * flux[octant * n + d][glm::length_t(band)];
-      }
-    }
-  }
-  gl::put(inflow_, values);
+  if (sky == nullptr) return;
+  make_inflow(*sky, all_);
+  if (sources_) make_inflow(*sky, *sources_);
 }
 
-void OrdinatesTransportGl::sweep() {
-  shares_.bind_storage(SHARES_SLOT);
-  inflow_.bind_storage(INFLOW_SLOT);
-  sweep_.set("streams_in", streams_in_ ? 1 : 0);
+void OrdinatesTransportGl::make_inflow(const Sky& sky, Angles& angles) const {
+  if (sky.id() == angles.inflow_of) return;
+  angles.inflow_of = sky.id();
+  const OrdinateSet set = ordinate_set(angles.choice.directions);
+  const std::vector<glm::vec3> flux = rim_inflow(sky, set);
+  const size_t n = set.directions.size(), quads = size_t(lanes_ / 3);
+  for (size_t batch = 0; batch < angles.inflow.size(); ++batch) {
+    std::vector<glm::vec4> values(8 * size_t(lanes_) * 3, glm::vec4(0.0f));
+    for (size_t octant = 0; octant < 8; ++octant) {
+      for (size_t i = 0; i < 4 * quads && 4 * quads * batch + i < n; ++i) {
+        const size_t d = 4 * quads * batch + i;
+        const glm::vec3 per_flux = inflow_per_flux(set, d, grid_.cell_size_m);
+        for (size_t band = 0; band < 3; ++band) {
+          const size_t lane = octant * size_t(lanes_) + band * quads + i / 4;
+          for (size_t axis = 0; axis < 3; ++axis)
+            values[3 * lane + axis][glm::length_t(i % 4)] =
+                per_flux[glm::length_t(axis)] * flux[octant * n + d][glm::length_t(band)];
+        }
+      }
+    }
+    gl::put(angles.inflow[batch], values);
+  }
+}
+
+void OrdinatesTransportGl::sweep(size_t batch) {
+  const gl::Program& program = angles().sweep;
+  angles().shares[batch].bind_storage(SHARES_SLOT);
+  angles().inflow[batch].bind_storage(INFLOW_SLOT);
+  program.set("streams_in", streams_in_ ? 1 : 0);
   cell_word_.bind(CELL_WORD_UNIT);
   side_light_.bind(SIDE_LIGHT_UNIT);
   block_list_.bind(BLOCK_LIST_UNIT);
   for (GLuint axis = 0; axis < 3; ++axis) faces_[axis].bind_image(FACES_IMAGE + axis, GL_READ_WRITE);
   arrived_.bind_image(ARRIVED_IMAGE, GL_WRITE_ONLY);
-  sweep_.use();
+  program.use();
   for (size_t diagonal = 0; diagonal + 1 < first_block_.size(); ++diagonal) {
-    sweep_.set("first_block", first_block_[diagonal]);
+    program.set("first_block", first_block_[diagonal]);
     glDispatchCompute(GLuint(first_block_[diagonal + 1] - first_block_[diagonal]), 1, 1);
     glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   }
@@ -147,13 +178,16 @@ void OrdinatesTransportGl::sweep() {
 void OrdinatesTransportGl::carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received,
                                  const BounceRules& /*rules*/, BounceReport& report) {
   prepare(voxels, sent);
-  sweep();
-  arrived_.bind(ARRIVED_UNIT);
-  received.bind_storage(RECEIVED_SLOT);
-  collect_.use();
-  collect_.set("lanes", lanes_);
-  gl::dispatch_linear(capacity_, LINEAR_GROUP);
-  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  for (size_t batch = 0; batch < angles().shares.size(); ++batch) {
+    sweep(batch);
+    arrived_.bind(ARRIVED_UNIT);
+    received.bind_storage(RECEIVED_SLOT);
+    collect_.use();
+    collect_.set("lanes", lanes_);
+    gl::dispatch_linear(capacity_, LINEAR_GROUP);
+    // The next batch's arrivals take the place of those that have been read.
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  }
   report.passes += 1;
 }
 

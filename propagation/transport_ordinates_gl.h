@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/gl/objects.h"
@@ -25,10 +26,13 @@ class OrdinatesTransportGl : public TransportGl {
   /// Directions and rule by choose_ordinates. @throws Error(usage) as ordinate_set.
   OrdinatesTransportGl(const Grid& grid, const SchemeOptions& options);
   OrdinatesTransportGl(const Grid& grid, int directions, Ordinates rule = Ordinates::step);
+  /// @param sources  of the orders that carry_sources() announces; none: `choice`.
+  OrdinatesTransportGl(const Grid& grid, OrdinateChoice choice, std::optional<OrdinateChoice> sources);
 
   void carry(const VoxelGridGl& voxels, const gl::Buffer& sent, const gl::Buffer& received, const BounceRules& rules,
              BounceReport& report) override;
   void stream_in(const Sky* sky) override;
+  void carry_sources(bool on) override;
   /// Of what sides send: the sky's own light is not in it.
   RadianceVolumeGl radiance(const VoxelGridGl& voxels, const gl::Buffer& sent) override;
   bool iterative() const override { return false; }
@@ -45,16 +49,26 @@ class OrdinatesTransportGl : public TransportGl {
  private:
   void list_blocks();
   void prepare(const VoxelGridGl& voxels, const gl::Buffer& sent);
-  void sweep();
-  gl::Buffer pack_shares(const OrdinateSet& set) const;
+  void sweep(size_t batch);
+  /// Directions and their rule, in batches of as many as invocations take at once.
+  struct Angles {
+    OrdinateChoice choice;
+    gl::Program sweep;
+    std::vector<gl::Buffer> shares, inflow;  // by batch
+    std::uint64_t inflow_of = 0;             // Sky::id() that inflow is made from
+  };
+  Angles make_angles(OrdinateChoice choice) const;
+  void make_inflow(const Sky& sky, Angles& angles) const;
+  Angles& angles() { return of_sources_ && sources_ ? *sources_ : all_; }
 
   Grid grid_{};
   OrdinateChoice choice_;
   int lanes_;  // invocations of one block and octant: three bands of as many quads of directions
-  gl::Program prepare_, sweep_, collect_;
+  gl::Program prepare_, collect_;
+  Angles all_;
+  std::optional<Angles> sources_;
+  bool of_sources_ = false;
   std::unique_ptr<SweepRadianceGl> read_out_;  // made on first use
-  gl::Buffer shares_, inflow_;
-  std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
   bool streams_in_ = false;
   gl::Texture faces_[3];                          // by axis: what leaves cells through downwind faces
   gl::Texture cell_word_, side_light_, arrived_;  // prepare_sweep.comp.glsl, sweep.comp.glsl
