@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -50,6 +51,31 @@ Grid half_grid(const Grid& grid) {
   return half;
 }
 
+/// What `ordinates` keeps of a block with so many sides, about: voxels, flux, powers, what sweeps know of sides.
+std::int64_t bytes_of_block(size_t sides) {
+  constexpr size_t kOfTransport = sizeof(std::uint32_t) + 5 * sizeof(glm::vec4);
+  const size_t of_side =
+      sizeof(shared::Side) + 2 * sizeof(glm::vec4) + BouncesCpu::bytes_for(1) + side_irradiance_bytes(1) + kOfTransport;
+  return sides == 0 ? 0 : std::int64_t(sizeof(VoxelGrid::Leaf) + sizeof(sweep::BlockSides) + sides * of_side);
+}
+
+/// All ranks, each of which counts the sides of its part.
+Decomposition evened_out_by_memory(const Scene& scene, const Grid& grid, OrdinateChoice choice,
+                                   const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  std::vector<std::uint32_t> sides;
+  expected_sides(scene, grid, part, &sides);
+  const glm::ivec3 blocks = leaf_blocks(grid);
+  std::vector<std::int64_t> weights(size_t(blocks.y) * size_t(blocks.z), 0);
+  for (size_t i = 0; i < sides.size(); ++i) {
+    const glm::ivec3 b = part.block(i);
+    weights[size_t(b.y) + size_t(blocks.y) * size_t(b.z)] += bytes_of_block(sides[i]);
+  }
+  ranks.ranks.add(weights);
+  for (std::int64_t& w : weights) w += std::int64_t(OrdinatesTransportCpu::bytes_of_column(choice));
+  return ranks.decomposition.evened_out(weights);
+}
+
 }  // namespace
 
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
@@ -92,9 +118,10 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
       rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
-  if (ranks != nullptr && ranks->count() > 1)
-    ranks_.emplace(RanksOfVolume{*ranks, Decomposition(leaf_blocks(grid_), ranks->count())});
-  if (ranks_) refuse_of_ranks(options);
+  if (ranks != nullptr && ranks->count() > 1) {
+    refuse_of_ranks(options);
+    share_out(*ranks);
+  }
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   if (options.memory_limit)
@@ -102,6 +129,23 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
                        ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
                               : bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)),
                        "CPU");
+}
+
+/// What each needs is asked of all, so that all decide alike.
+void VolumeCpu::share_out(const Ranks& ranks) {
+  ranks_.emplace(RanksOfVolume{ranks, Decomposition(leaf_blocks(grid_), ranks.count())});
+  if (!options_.memory_limit) return;
+  const auto fits = [&] {
+    const std::array<double, 1> own{double(bytes_expected_cpu(scene_, grid_, options_, *ranks_))};
+    const std::vector<double> all = ranks.gather(own);
+    return *std::max_element(all.begin(), all.end()) <= double(*options_.memory_limit);
+  };
+  if (fits()) return;
+  if (options_.scheme.scheme != Scheme::ordinates) return;
+  ranks_->lean = true;
+  if (fits()) return;
+  const OrdinateChoice choice = choose_ordinates(grid_.cells, options_.scheme);
+  ranks_->decomposition = evened_out_by_memory(scene_, grid_, choice, *ranks_);
 }
 
 void VolumeCpu::scene_moved() {
@@ -113,7 +157,7 @@ void VolumeCpu::shift_grid(glm::vec3 cells) {
   if (cells == options_.grid_shift_cells) return;
   options_.grid_shift_cells = cells;
   grid_ = make_grid(scene_, options_.grid_cells, cells, options_.grid_box);
-  if (ranks_) ranks_->decomposition = Decomposition(leaf_blocks(grid_), ranks_->ranks.count());
+  if (ranks_) share_out(ranks_->ranks);
   cells_ = {};
   shifted_ = true;
 }

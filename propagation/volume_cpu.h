@@ -21,7 +21,9 @@ class VolumeCpu {
   /// @throws Error(usage) for options that make no sense, Error(over_limit) above options.memory_limit, and as
   ///   make_grid.
   /// @param ranks  that hold the volume together: this one then has a part, and all do everything below together, to
-  ///   the same numbers as one alone. Null: there is one.
+  ///   the same numbers as one alone. Parts are of as many blocks each; where one of them would need more than
+  ///   options.memory_limit, ranks are lean (RanksOfVolume), and where that is not enough parts are cut so that the
+  ///   largest need is least. Null: there is one.
   VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks = nullptr);
   ~VolumeCpu();
 
@@ -61,6 +63,8 @@ class VolumeCpu {
   size_t bytes() const;
 
  private:
+  void share_out(const Ranks& ranks);
+
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;

@@ -244,6 +244,42 @@ TEST(Ranks, MemoryOfARank) {
   RecordProperty("one_over_largest_of_8", std::to_string(double(one) / double(largest)));
 }
 
+// Under a limit that even parts would exceed, ranks keep less at once, and then are cut by what they need: the same
+// numbers, and a limit below that is refused.
+TEST(Ranks, LeanUnderALimit) {
+  const Scene scene = data_scene("cornell");
+  VolumeOptions options;
+  options.grid_cells = 64;
+  const Answer one = answer_of(scene, options, 1);
+  const auto largest_need = [&](VolumeOptions limited, bool& lean, bool& even) {
+    std::mutex mutex;
+    size_t largest = 0;
+    run_ranks_in_threads(4, [&](const Ranks& ranks) {
+      const VolumeCpu volume(scene, limited, &ranks);
+      const size_t need = bytes_expected_cpu(scene, volume.grid(), options, *volume.ranks());
+      const std::lock_guard lock(mutex);
+      largest = std::max(largest, need);
+      lean = volume.ranks()->lean;
+      even = volume.ranks()->part() == Decomposition(leaf_blocks(volume.grid()), 4).part(ranks.rank());
+    });
+    return largest;
+  };
+  bool lean = true, even = false;
+  size_t need = largest_need(options, lean, even);
+  EXPECT_TRUE(!lean && even);
+  for (const bool cut : {false, true}) {
+    options.memory_limit = need - 1;
+    const size_t less = largest_need(options, lean, even);
+    EXPECT_LT(less, need);
+    EXPECT_TRUE(lean);
+    EXPECT_EQ(even, !cut);
+    expect_same(one, answer_of(scene, options, 4), cut ? "cut by need" : "lean");
+    need = less;
+  }
+  options.memory_limit = need - 1;
+  EXPECT_THROW(answer_of(scene, options, 4), Error);
+}
+
 // One that throws does not leave the others waiting.
 TEST(Ranks, OneThatFailsEndsAll) {
   EXPECT_THROW(run_ranks_in_threads(3,
