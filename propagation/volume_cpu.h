@@ -46,6 +46,7 @@ class VolumeCpu {
   void irradiate();
 
   const Grid& grid() const { return grid_; }
+  const VolumeOptions& options() const { return options_; }
   const VoxelGrid& voxels() const { return voxels_; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
   /// Null where there is one rank.

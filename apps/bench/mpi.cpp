@@ -292,6 +292,7 @@ std::string scaling_row(const char* name, const nlohmann::json& s, int ranks) {
       "  waiting, share of the time by rank: {:.3f}\n",
       name, cells[0].get<int>(), cells[1].get<int>(), cells[2].get<int>(), s["directions"].get<int>(), ranks,
       s["ranks_y_z"][0].get<int>(), s["ranks_y_z"][1].get<int>(), s["chunks"].get<int>(),
+      s["octants_at_once"].get<int>(),
       s["oversubscribed"].get<bool>() ? " (more ranks than cores: efficiency is of the cores)" : "",
       1e3 * s["one_s"].get<double>(), 1e3 * s["sweep_s"].get<double>(), 1e3 * s["own_part_s"].get<double>(),
       s["ns_per_unknown"].get<double>(), s["megabytes_sent"].get<double>(), 100.0 * s["efficiency"].get<double>(),

@@ -114,6 +114,20 @@ TEST(Ranks, OrdinatesBitEqualToOne) {
   }
 }
 
+// Without any tree of triangles: light meets faces of parts that are on other ranks.
+TEST(Ranks, FirstLightByFacesBitEqualToOne) {
+  const Scene scene = data_scene("cornell");
+  VolumeOptions options;
+  options.grid_cells = 40;
+  options.bounces = 2;
+  options.first_light = VolumeOptions::FirstLight::faces;
+  const Answer one = answer_of(scene, options, 1);
+  for (int ranks : {2, 3, 8}) expect_same(one, answer_of(scene, options, ranks), fmt::format("{}", ranks));
+  options.first_light = VolumeOptions::FirstLight::rays;
+  const Answer rays = answer_of(scene, options, 1);
+  EXPECT_NEAR(double(rays.report.sent.y) / double(one.report.sent.y), 1.0, 0.02);
+}
+
 // More ranks than blocks along an axis, cells that fill no last block, and a sky that streams in at the rim.
 TEST(Ranks, OddShapesUnderASky) {
   Scene scene;
