@@ -45,7 +45,7 @@ T value_of(std::span<const std::byte> bytes) {
 
 struct SideThere {
   shared::Side side;
-  glm::vec4 direct, indirect, emitted, punctual;
+  glm::vec4 direct, indirect;
 };
 
 /// A bit for each block. What this rank has of those goes to the first.
@@ -57,8 +57,7 @@ std::vector<std::vector<SideThere>> send_sides(const VolumeCpu& volume, std::spa
     const shared::Side& side = voxels.sides()[i];
     const glm::ivec3 block = shared::cell_coord(voxels.grid(), side.cell) >> kLeafShift;
     if (blocks[size_t(block_index(voxels.blocks(), block))] == std::byte(0)) continue;
-    to[0].push_back({side, volume.irradiance().direct[i], volume.irradiance().indirect[i], volume.flux().emitted[i],
-                     volume.flux().punctual[i]});
+    to[0].push_back({side, volume.irradiance().direct[i], volume.irradiance().indirect[i]});
   }
   return exchange_values(ranks, to);
 }
@@ -110,8 +109,6 @@ VolumeLead::Sides VolumeLead::fetch(const VolumeCpu& volume, const std::vector<b
       sides.push_back(s.side);
       found.irradiance.direct.push_back(s.direct);
       found.irradiance.indirect.push_back(s.indirect);
-      found.flux.emitted.push_back(s.emitted);
-      found.flux.punctual.push_back(s.punctual);
     }
   }
   found.voxels = VoxelGrid(volume.grid(), std::move(sides));
@@ -119,9 +116,7 @@ VolumeLead::Sides VolumeLead::fetch(const VolumeCpu& volume, const std::vector<b
 }
 
 size_t VolumeLead::Sides::bytes() const {
-  return voxels.bytes() +
-         (irradiance.direct.size() + irradiance.indirect.size() + flux.emitted.size() + flux.punctual.size()) *
-             sizeof(glm::vec4);
+  return voxels.bytes() + (irradiance.direct.size() + irradiance.indirect.size()) * sizeof(glm::vec4);
 }
 
 std::vector<bool> blocks_seen(const Grid& grid, std::span<const glm::vec4> positions) {

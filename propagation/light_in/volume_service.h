@@ -28,10 +28,9 @@ class VolumeLead {
   struct Sides {
     VoxelGrid voxels;
     SideIrradiance irradiance;
-    SideFlux flux;
     size_t bytes() const;
   };
-  /// @param blocks  x fastest: those whose sides are wanted. Memory and messages: 128 bytes a side of them.
+  /// @param blocks  x fastest: those whose sides are wanted. Memory and messages: 96 bytes a side of them.
   Sides fetch(const VolumeCpu& volume, const std::vector<bool>& blocks) const;
 
  private:

@@ -134,7 +134,7 @@ VolumeReport report_of(const VolumeCpu& volume) {
 
 /// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded; after a first bounce on the screen
 /// its virtual lights are read back. Where ranks hold the volume together this is the one that leads (VolumeLead), and
-/// has of the others' sides those that its picture reads, or all where someone asks for light_in().
+/// has of the others' sides those that its pixels read, but no light_in() of them.
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
@@ -197,13 +197,8 @@ class SidesOnCpu : public FrameVolume {
   const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
   const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
   SentFlux light_in() const override {
-    if (!sides_on_gpu()) return {};
-    if (lead_) {
-      const glm::ivec3 blocks = volume_.voxels().blocks();
-      fetched_ = lead_->fetch(volume_, std::vector<bool>(size_t(blocks.x) * size_t(blocks.y) * size_t(blocks.z), true));
-      upload_sides();
-    }
-    const SideFlux& flux = lead_ ? fetched_.flux : volume_.flux();
+    if (!sides_on_gpu() || lead_) return {};
+    const SideFlux& flux = volume_.flux();
     upload_values(flux.punctual, punctual_flux_);
     upload_values(flux.emitted, emitted_flux_);
     return {flux.punctual.empty() ? nullptr : &punctual_flux_, flux.emitted.empty() ? nullptr : &emitted_flux_};
@@ -267,7 +262,7 @@ class SidesOnCpu : public FrameVolume {
     std::memcpy(points.data(), positions.data(), points.size() * sizeof(glm::vec4));
     fetched_ = lead_->fetch(volume_, blocks_seen(volume_.grid(), points));
   }
-  void upload_sides() const {
+  void upload_sides() {
     upload(sides(), voxels_);
     upload_values(irradiance().direct, direct_);
     upload_values(irradiance().indirect, indirect_);
@@ -284,13 +279,13 @@ class SidesOnCpu : public FrameVolume {
   VolumeCpu volume_;
   glm::vec3 shift_{0.0f};
   VolumeLead::Totals totals_;
-  mutable VolumeLead::Sides fetched_;
+  VolumeLead::Sides fetched_;
   std::optional<DirectLightCpu> direct_light_;  // of Source::lights
   std::unique_ptr<EmbreeScene> embree_;         // of Source::first_bounce
   SideSkyCpu sky_;
   LightsOnHost lights_;
-  mutable VoxelGridGl voxels_;
-  mutable gl::Buffer direct_, indirect_;
+  VoxelGridGl voxels_;
+  gl::Buffer direct_, indirect_;
   VolumeGather gather_;
   // Of the last run, when it is asked for.
   mutable gl::Buffer punctual_flux_, emitted_flux_;
