@@ -11,8 +11,8 @@ namespace volgi {
 
 /// Which faces of a whole grid stop light, as cells see them, without what sides know of their surface: little enough
 /// that every rank has those of all. Rays go from cell to cell through faces without a side.
-/// Memory: 4 bytes a block of 8^3 cells, 76 a block with sides, 4 a cell with sides and one a side (some 400 bytes a
-/// block of a wall, a tenth of VoxelGrid's).
+/// Memory: 4 bytes a block of 8^3 cells, 76 a block with sides, 4 a cell with sides and one a side (some 450 bytes a
+/// block of a wall, a twentieth of VoxelGrid's).
 class GridFaces {
  public:
   explicit GridFaces(const VoxelGrid& voxels);
