@@ -76,6 +76,15 @@ Decomposition evened_out_by_memory(const Scene& scene, const Grid& grid, Ordinat
   return ranks.decomposition.evened_out(weights);
 }
 
+/// Voxels of a rank, with what it knows of others'.
+size_t voxels_bytes(const Scene& scene, const Grid& grid, const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  const glm::ivec3 around(0, 1, 1);
+  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
+  const ExpectedSides known = expected_sides(scene, grid, held);
+  return VoxelGrid::bytes_for(held, known.sides, known.blocks);
+}
+
 }  // namespace
 
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
@@ -100,16 +109,20 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
 
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const RanksOfVolume& ranks) {
-  const BlockBox part = ranks.part();
-  const glm::ivec3 around(0, 1, 1);
-  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
-  const ExpectedSides own = expected_sides(scene, grid, part), known = expected_sides(scene, grid, held);
-  size_t bytes = voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(held, known.sides, known.blocks) +
-                 2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
-                 side_irradiance_bytes(own.sides);
-  if (options.scheme.scheme == Scheme::ordinates)
-    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, options.scheme), own);
-  return bytes + ConservativeTransportCpu::bytes_for(ranks, options.scheme.sh_order, own);
+  const SchemeOptions& scheme = options.scheme;
+  const ExpectedSides own = expected_sides(scene, grid, ranks.part());
+  const size_t bytes = voxelization_mipmaps(scene).bytes() + voxels_bytes(scene, grid, ranks) +
+                       2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
+                       side_irradiance_bytes(own.sides);
+  if (scheme.scheme == Scheme::ordinates)
+    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, scheme), own);
+  const size_t fine = bytes + ConservativeTransportCpu::bytes_for(ranks, scheme.sh_order, own);
+  if (!has_coarse_part(scheme, grid)) return fine;
+  const Grid half = half_grid(grid);
+  const RanksOfVolume of_half{ranks.ranks, Decomposition(leaf_blocks(half), ranks.ranks.count())};
+  const ExpectedSides coarse = expected_sides(scene, half, of_half.part());
+  return fine + voxels_bytes(scene, half, of_half) +
+         ConservativeTransportCpu::bytes_for(of_half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
@@ -134,6 +147,10 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
 /// What each needs is asked of all, so that all decide alike.
 void VolumeCpu::share_out(const Ranks& ranks) {
   ranks_.emplace(RanksOfVolume{ranks, Decomposition(leaf_blocks(grid_), ranks.count())});
+  if (has_coarse_part()) {  // parts of either grid hold the same of the scene
+    half_ranks_.emplace(RanksOfVolume{ranks, Decomposition(leaf_blocks(half_grid(grid_)), ranks.count())});
+    ranks_->decomposition = half_ranks_->decomposition.doubled(leaf_blocks(grid_));
+  }
   if (!options_.memory_limit) return;
   const auto fits = [&] {
     const std::array<double, 1> own{double(bytes_expected_cpu(scene_, grid_, options_, *ranks_))};
@@ -164,7 +181,14 @@ void VolumeCpu::shift_grid(glm::vec3 cells) {
 
 VolumeCpu::~VolumeCpu() = default;
 
-bool VolumeCpu::has_coarse_part() const { return !ranks_ && volgi::has_coarse_part(options_.scheme, grid_); }
+bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
+
+void VolumeCpu::voxelize_half(bool white) {
+  const Grid half = half_grid(grid_);
+  half_voxels_ =
+      half_ranks_ ? voxelize_cpu(scene_, half, mipmaps_, *half_ranks_) : voxelize_cpu(scene_, half, mipmaps_);
+  if (white) bound_white_pockets(half_voxels_, half_ranks_ ? &*half_ranks_ : nullptr);
+}
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
@@ -180,13 +204,13 @@ void VolumeCpu::voxelize() {
   if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
   voxels_ = std::move(fresh);
   if (ranks_) halo_.emplace(*ranks_, voxels_);
-  if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
-  if (coarse && white) bound_white_pockets(half_voxels_);
+  if (coarse) voxelize_half(white);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
   } else {
-    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks());
+    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks(),
+                                    half_ranks_ ? &*half_ranks_ : nullptr);
     if (bounces_) {
       bounces_->set_transport(std::move(transport));
     } else {

@@ -65,13 +65,14 @@ class VolumeCpu {
 
  private:
   void share_out(const Ranks& ranks);
+  void voxelize_half(bool white);
 
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;
   BounceRules rules_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
-  std::optional<RanksOfVolume> ranks_;
+  std::optional<RanksOfVolume> ranks_, half_ranks_;
   std::optional<SideHalo> halo_;  // of voxels_
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;

@@ -83,8 +83,6 @@ void refuse_of_ranks(const VolumeOptions& o) {
     throw Error(ExitCode::usage,
                 "the papers' schemes run as one rank; of several there are --scheme ordinates and "
                 "conservative");
-  if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
-    throw Error(ExitCode::usage, "the coarse grid of conservative is for one rank: leave it out, or use one rank");
 }
 
 void warn_of_answer(const std::string& scene, const VolumeOptions& o, const BounceReport& report, size_t pocket_cells,

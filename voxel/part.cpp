@@ -99,6 +99,15 @@ Decomposition Decomposition::evened_out(const std::vector<std::int64_t>& weights
   return d;
 }
 
+Decomposition Decomposition::doubled(glm::ivec3 blocks) const {
+  Decomposition d(blocks, along_);
+  for (int axis = 0; axis < 2; ++axis) {
+    Cuts& cuts = d.cuts_[size_t(axis)];
+    for (size_t i = 0; i < cuts.size(); ++i) cuts[i] = std::min(2 * cuts_[size_t(axis)][i], blocks[axis + 1]);
+  }
+  return d;
+}
+
 glm::ivec2 Decomposition::widest() const {
   glm::ivec2 most(0);
   for (int axis = 0; axis < 2; ++axis) {

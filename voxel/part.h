@@ -44,6 +44,9 @@ class Decomposition {
   /// @param weights  of columns of blocks, y fastest.
   Decomposition evened_out(const std::vector<std::int64_t>& weights) const;
 
+  /// The same parts of a grid of these blocks, about twice as many: cut at twice the places.
+  Decomposition doubled(glm::ivec3 blocks) const;
+
   glm::ivec3 blocks() const { return blocks_; }
   int count() const { return along_.x * along_.y; }
   glm::ivec2 along_yz() const { return along_; }

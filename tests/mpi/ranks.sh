@@ -44,6 +44,7 @@ same_bytes() {
   check_export "$source/data/cornell.glb" --grid 48 --stage voxels
   check_export "$source/data/thin_wall.glb" --grid 40 --bounces 2 --directions 48
   check_export "$source/data/room.glb" --grid 40 --first-light faces
+  check_export "$source/data/cornell.glb" --grid 40 --scheme conservative --bounces 1
   local atrium
   atrium=$(dirname "$(dirname "$volgi")")/data/atrium.glb
   if [[ -f $atrium ]]; then

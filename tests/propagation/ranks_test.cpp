@@ -203,6 +203,23 @@ TEST(Ranks, ConservativeBitEqualToOne) {
   }
 }
 
+// What is left of a pulse ends on the coarse grid, whose leaves are one rank's with their fine ones; in odd shapes, and
+// with half steps, which orders one by one begin with.
+TEST(Ranks, ConservativeCoarseGridBitEqualToOne) {
+  for (const int cells : {28, 45}) {
+    const Scene scene = data_scene(cells == 28 ? "cornell" : "room");
+    VolumeOptions options;
+    options.scheme.scheme = Scheme::conservative;
+    options.grid_cells = cells;
+    options.bounces = 1;
+    const Answer one = answer_of(scene, options, 1);
+    EXPECT_GT(one.report.passes, 30);
+    for (const int ranks : {2, 3, 4}) expect_same(one, answer_of(scene, options, ranks), fmt::format("{}", ranks));
+    options.iterations = 6;  // most of the light goes on coarsely
+    expect_same(answer_of(scene, options, 1), answer_of(scene, options, 4), "half steps");
+  }
+}
+
 // A run that has ended early goes on as another number of ranks, to what one rank has without any stop.
 TEST(Ranks, GoOnFromACheckpoint) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "volgi_ranks_checkpoint";
