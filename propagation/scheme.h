@@ -29,7 +29,7 @@ struct SchemeOptions {
   /// radiosity of the surfaces in each occupied cell; no power is kept (docs/theory.md#papers).
   enum class Injection { flux, max } injection = Injection::flux;
   /// conservative: the end of every pulse is carried on a grid of twice the cells' edge. None: where the backend has
-  /// that, which is the CPU as one rank; asked for on the GPU or of several ranks it is refused.
+  /// that, which is the CPU; asked for on the GPU it is refused.
   std::optional<bool> coarse_start;
 };
 

@@ -33,10 +33,14 @@ int longest_pulse(const Grid& g) { return 64 * (g.cells.x + g.cells.y + g.cells.
 
 /// The end of a pulse on the grid of twice the edge.
 struct ConservativeTransportCpu::CoarsePart {
-  CoarsePart(const VoxelGrid& half_voxels, int order)
-      : voxels(half_voxels), transport(half_voxels, order), received(half_voxels.side_count()) {}
+  CoarsePart(const VoxelGrid& half_voxels, int order, const RanksOfVolume* of)
+      : voxels(half_voxels),
+        ranks(of),
+        transport(half_voxels, order, nullptr, nullptr, of),
+        received(half_voxels.side_count()) {}
 
   const VoxelGrid& voxels;
+  const RanksOfVolume* ranks;  // null: there is one
   ConservativeTransportCpu transport;
   std::vector<glm::vec4> received;
   std::unique_ptr<CoarseLink> link;  // made on first use
@@ -46,15 +50,17 @@ struct ConservativeTransportCpu::CoarsePart {
 };
 
 ConservativeTransportCpu::ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels,
-                                                   const LobeKernels* kernels, const RanksOfVolume* ranks)
+                                                   const LobeKernels* kernels, const RanksOfVolume* ranks,
+                                                   const RanksOfVolume* half_ranks)
     : voxels_(voxels),
       order_(order),
+      ranks_(ranks),
       kernels_(kernels != nullptr ? *kernels : lobe_kernels(order)),
       wave_(LeafNumbers(voxels.held(), voxels.part()), coefficients(order), ranks),
       walls_(collect_walls(voxels, wave_.numbers())) {
   assert(order == 1 || order == 2);
-  assert(ranks == nullptr || half_voxels == nullptr);
-  if (half_voxels != nullptr) coarse_ = std::make_unique<CoarsePart>(*half_voxels, order);
+  assert(half_voxels == nullptr || (ranks == nullptr) == (half_ranks == nullptr));
+  if (half_voxels != nullptr) coarse_ = std::make_unique<CoarsePart>(*half_voxels, order, half_ranks);
   // A side sends as one sixth of isotropic light would pass there: six times what comes in of an isotropic lobe.
   std::vector<float> cells(size_t(coefficients(order) * kStride), 0.0f), lobe(cells.size());
   cells[0] = 1.0f;
@@ -190,7 +196,12 @@ bool ConservativeTransportCpu::ended(const BounceRules& rules) const {
 glm::vec3 ConservativeTransportCpu::end_coarsely(std::span<glm::vec4> received, const BounceRules& rules) {
   CoarsePart& c = *coarse_;
   ConservativeTransportCpu& t = c.transport;
-  if (!c.link) c.link = std::make_unique<CoarseLink>(voxels_, c.voxels, coefficients(order_));
+  if (!c.link) {
+    std::optional<CoarseLink::OfRanks> ranks;
+    if (ranks_ != nullptr) ranks.emplace(CoarseLink::OfRanks{*ranks_, *c.ranks});
+    c.link = std::make_unique<CoarseLink>(voxels_, c.voxels, coefficients(order_), ranks);
+  }
+  c.link->fetch_moved(lobes(), kernels_);
   t.wave_.start(c.link->reached(lobes()), [&](int number, float* out, LeafLight& light) {
     c.link->gather(lobes(), kernels_, number, out);
     kernels_.rescale(out, kAllRows, out, false, light);

@@ -28,9 +28,11 @@ class ConservativeTransportCpu : public TransportCpu {
   /// null).
   /// @param kernels  of an instruction set, for tests; null: the machine's best.
   /// @param ranks    that the voxels are parts of, which then do all together: each pass follows on what those beside
-  /// sent of the one before. One rank's numbers, without a coarse part. Null: there is one.
+  /// sent of the one before. One rank's numbers. Null: there is one.
+  /// @param half_ranks  that the half voxels are parts of, of which those of the voxels are twice (Decomposition).
   ConservativeTransportCpu(const VoxelGrid& voxels, int order, const VoxelGrid* half_voxels = nullptr,
-                           const LobeKernels* kernels = nullptr, const RanksOfVolume* ranks = nullptr);
+                           const LobeKernels* kernels = nullptr, const RanksOfVolume* ranks = nullptr,
+                           const RanksOfVolume* half_ranks = nullptr);
   ~ConservativeTransportCpu() override;
 
   void begin(std::span<const glm::vec4> sent) override;
@@ -67,6 +69,7 @@ class ConservativeTransportCpu : public TransportCpu {
 
   const VoxelGrid& voxels_;
   int order_;
+  const RanksOfVolume* ranks_;
   bool half_steps_ = false;  // light moves by half a cell a pass
   LobeKernels kernels_;
   LobeWave wave_;

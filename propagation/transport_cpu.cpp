@@ -5,14 +5,16 @@
 namespace volgi {
 
 std::unique_ptr<TransportCpu> make_transport(const VoxelGrid& voxels, const SchemeOptions& options,
-                                             const VoxelGrid* half_voxels, const RanksOfVolume* ranks) {
+                                             const VoxelGrid* half_voxels, const RanksOfVolume* ranks,
+                                             const RanksOfVolume* half_ranks) {
   switch (options.scheme) {
     case Scheme::ordinates:
       return std::make_unique<OrdinatesTransportCpu>(voxels, choose_ordinates(voxels.grid().cells, options), nullptr,
                                                      ranks);
     case Scheme::conservative:
-      return std::make_unique<ConservativeTransportCpu>(
-          voxels, options.sh_order, options.coarse_start.value_or(true) ? half_voxels : nullptr, nullptr, ranks);
+      return std::make_unique<ConservativeTransportCpu>(voxels, options.sh_order,
+                                                        options.coarse_start.value_or(true) ? half_voxels : nullptr,
+                                                        nullptr, ranks, half_ranks);
     case Scheme::gaitatzes2010:
     case Scheme::lpv2009:
       break;

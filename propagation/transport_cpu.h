@@ -54,10 +54,11 @@ class TransportCpu {
 
 /// @param voxels       must outlive the transport.
 /// @param half_voxels  the same scene in cells of twice the edge, for the coarse part of `conservative` (may be null).
-/// @param ranks        that the voxels are parts of; null: there is one.
+/// @param ranks, half_ranks  that they are parts of; null: there is one.
 /// @throws Error(usage) for a number of directions that there is not, and for schemes that do not carry sides.
 std::unique_ptr<TransportCpu> make_transport(const VoxelGrid& voxels, const SchemeOptions& options,
                                              const VoxelGrid* half_voxels = nullptr,
-                                             const RanksOfVolume* ranks = nullptr);
+                                             const RanksOfVolume* ranks = nullptr,
+                                             const RanksOfVolume* half_ranks = nullptr);
 
 }  // namespace volgi

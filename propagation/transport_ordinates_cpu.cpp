@@ -235,12 +235,12 @@ std::vector<sweep::Constants> OrdinatesTransportCpu::make_batches(OrdinateChoice
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
                                              const sweep::Kernels* kernels, const RanksOfVolume* ranks,
-                                             size_t many_flows)
+                                             SweepPipeline::AtOnce at_once)
     : voxels_(voxels),
       choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
       batches_(make_batches(choice, voxels.grid().cell_size_m)),
-      pipeline_(ranks, voxels.part(), face_floats(), many_flows) {
+      pipeline_(ranks, voxels.part(), face_floats(), at_once) {
   pack_sides({});
 }
 
@@ -455,6 +455,11 @@ size_t OrdinatesTransportCpu::bytes_for(const RanksOfVolume& ranks, OrdinateChoi
   return bytes_of_sides(ranks.part(), expected) +
          SweepPipeline::bytes_for(&ranks, ranks.part(),
                                   face_floats(octets_of(std::min(choice.directions / 8, int(kBatch)))));
+}
+
+size_t OrdinatesTransportCpu::bytes_of_column(OrdinateChoice choice) {
+  constexpr size_t kOctants = 2;
+  return kOctants * sizeof(float) * face_floats(octets_of(std::min(choice.directions / 8, int(kBatch))));
 }
 
 size_t OrdinatesTransportCpu::bytes_of_sides(const BlockBox& part, const ExpectedSides& expected) {

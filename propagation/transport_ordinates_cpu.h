@@ -29,10 +29,10 @@ class OrdinatesTransportCpu : public TransportCpu {
   /// @param kernels  null: the fastest that this machine can run.
   /// @param ranks    that the voxels are parts of, which then do all together; null: there is one. No result depends
   ///                 on their number (sweep/sweep_pipeline.h).
-  /// @param many_flows  for tests, in place of kManyFlows.
+  /// @param at_once  for tests.
   /// @throws Error(usage) as ordinate_set.
   OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
-                        const RanksOfVolume* ranks = nullptr, size_t many_flows = SweepPipeline::kManyFlows);
+                        const RanksOfVolume* ranks = nullptr, SweepPipeline::AtOnce at_once = {});
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
@@ -47,6 +47,8 @@ class OrdinatesTransportCpu : public TransportCpu {
   static size_t bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected);
   /// Of a rank's part.
   static size_t bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice, const ExpectedSides& expected);
+  /// Of these, about what a column of blocks along x without any sides takes on lean ranks.
+  static size_t bytes_of_column(OrdinateChoice choice);
   const SweepPipeline& pipeline() const { return pipeline_; }
   OrdinateChoice choice() const { return choice_; }
 

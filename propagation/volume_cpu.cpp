@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -50,6 +51,40 @@ Grid half_grid(const Grid& grid) {
   return half;
 }
 
+/// What `ordinates` keeps of a block with so many sides, about: voxels, flux, powers, what sweeps know of sides.
+std::int64_t bytes_of_block(size_t sides) {
+  constexpr size_t kOfTransport = sizeof(std::uint32_t) + 5 * sizeof(glm::vec4);
+  const size_t of_side =
+      sizeof(shared::Side) + 2 * sizeof(glm::vec4) + BouncesCpu::bytes_for(1) + side_irradiance_bytes(1) + kOfTransport;
+  return sides == 0 ? 0 : std::int64_t(sizeof(VoxelGrid::Leaf) + sizeof(sweep::BlockSides) + sides * of_side);
+}
+
+/// All ranks, each of which counts the sides of its part.
+Decomposition evened_out_by_memory(const Scene& scene, const Grid& grid, OrdinateChoice choice,
+                                   const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  std::vector<std::uint32_t> sides;
+  expected_sides(scene, grid, part, &sides);
+  const glm::ivec3 blocks = leaf_blocks(grid);
+  std::vector<std::int64_t> weights(size_t(blocks.y) * size_t(blocks.z), 0);
+  for (size_t i = 0; i < sides.size(); ++i) {
+    const glm::ivec3 b = part.block(i);
+    weights[size_t(b.y) + size_t(blocks.y) * size_t(b.z)] += bytes_of_block(sides[i]);
+  }
+  ranks.ranks.add(weights);
+  for (std::int64_t& w : weights) w += std::int64_t(OrdinatesTransportCpu::bytes_of_column(choice));
+  return ranks.decomposition.evened_out(weights);
+}
+
+/// Voxels of a rank, with what it knows of others'.
+size_t voxels_bytes(const Scene& scene, const Grid& grid, const RanksOfVolume& ranks) {
+  const BlockBox part = ranks.part();
+  const glm::ivec3 around(0, 1, 1);
+  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
+  const ExpectedSides known = expected_sides(scene, grid, held);
+  return VoxelGrid::bytes_for(held, known.sides, known.blocks);
+}
+
 }  // namespace
 
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
@@ -74,16 +109,20 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
 
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const RanksOfVolume& ranks) {
-  const BlockBox part = ranks.part();
-  const glm::ivec3 around(0, 1, 1);
-  const BlockBox held{glm::max(part.first - around, 0), glm::min(part.last + around, leaf_blocks(grid))};
-  const ExpectedSides own = expected_sides(scene, grid, part), known = expected_sides(scene, grid, held);
-  size_t bytes = voxelization_mipmaps(scene).bytes() + VoxelGrid::bytes_for(held, known.sides, known.blocks) +
-                 2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
-                 side_irradiance_bytes(own.sides);
-  if (options.scheme.scheme == Scheme::ordinates)
-    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, options.scheme), own);
-  return bytes + ConservativeTransportCpu::bytes_for(ranks, options.scheme.sh_order, own);
+  const SchemeOptions& scheme = options.scheme;
+  const ExpectedSides own = expected_sides(scene, grid, ranks.part());
+  const size_t bytes = voxelization_mipmaps(scene).bytes() + voxels_bytes(scene, grid, ranks) +
+                       2 * sizeof(glm::vec4) * own.sides + BouncesCpu::bytes_for(own.sides) +
+                       side_irradiance_bytes(own.sides);
+  if (scheme.scheme == Scheme::ordinates)
+    return bytes + OrdinatesTransportCpu::bytes_for(ranks, choose_ordinates(grid.cells, scheme), own);
+  const size_t fine = bytes + ConservativeTransportCpu::bytes_for(ranks, scheme.sh_order, own);
+  if (!has_coarse_part(scheme, grid)) return fine;
+  const Grid half = half_grid(grid);
+  const RanksOfVolume of_half{ranks.ranks, Decomposition(leaf_blocks(half), ranks.ranks.count())};
+  const ExpectedSides coarse = expected_sides(scene, half, of_half.part());
+  return fine + voxels_bytes(scene, half, of_half) +
+         ConservativeTransportCpu::bytes_for(of_half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
@@ -92,9 +131,10 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
       grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
       rules_(bounce_rules(options, scene)),
       mipmaps_(voxelization_mipmaps(scene)) {
-  if (ranks != nullptr && ranks->count() > 1)
-    ranks_.emplace(RanksOfVolume{*ranks, Decomposition(leaf_blocks(grid_), ranks->count())});
-  if (ranks_) refuse_of_ranks(options);
+  if (ranks != nullptr && ranks->count() > 1) {
+    refuse_of_ranks(options);
+    share_out(*ranks);
+  }
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
   if (options.memory_limit)
@@ -102,6 +142,27 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
                        ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
                               : bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)),
                        "CPU");
+}
+
+/// What each needs is asked of all, so that all decide alike.
+void VolumeCpu::share_out(const Ranks& ranks) {
+  ranks_.emplace(RanksOfVolume{ranks, Decomposition(leaf_blocks(grid_), ranks.count())});
+  if (has_coarse_part()) {  // parts of either grid hold the same of the scene
+    half_ranks_.emplace(RanksOfVolume{ranks, Decomposition(leaf_blocks(half_grid(grid_)), ranks.count())});
+    ranks_->decomposition = half_ranks_->decomposition.doubled(leaf_blocks(grid_));
+  }
+  if (!options_.memory_limit) return;
+  const auto fits = [&] {
+    const std::array<double, 1> own{double(bytes_expected_cpu(scene_, grid_, options_, *ranks_))};
+    const std::vector<double> all = ranks.gather(own);
+    return *std::max_element(all.begin(), all.end()) <= double(*options_.memory_limit);
+  };
+  if (fits()) return;
+  if (options_.scheme.scheme != Scheme::ordinates) return;
+  ranks_->lean = true;
+  if (fits()) return;
+  const OrdinateChoice choice = choose_ordinates(grid_.cells, options_.scheme);
+  ranks_->decomposition = evened_out_by_memory(scene_, grid_, choice, *ranks_);
 }
 
 void VolumeCpu::scene_moved() {
@@ -113,14 +174,21 @@ void VolumeCpu::shift_grid(glm::vec3 cells) {
   if (cells == options_.grid_shift_cells) return;
   options_.grid_shift_cells = cells;
   grid_ = make_grid(scene_, options_.grid_cells, cells, options_.grid_box);
-  if (ranks_) ranks_->decomposition = Decomposition(leaf_blocks(grid_), ranks_->ranks.count());
+  if (ranks_) share_out(ranks_->ranks);
   cells_ = {};
   shifted_ = true;
 }
 
 VolumeCpu::~VolumeCpu() = default;
 
-bool VolumeCpu::has_coarse_part() const { return !ranks_ && volgi::has_coarse_part(options_.scheme, grid_); }
+bool VolumeCpu::has_coarse_part() const { return volgi::has_coarse_part(options_.scheme, grid_); }
+
+void VolumeCpu::voxelize_half(bool white) {
+  const Grid half = half_grid(grid_);
+  half_voxels_ =
+      half_ranks_ ? voxelize_cpu(scene_, half, mipmaps_, *half_ranks_) : voxelize_cpu(scene_, half, mipmaps_);
+  if (white) bound_white_pockets(half_voxels_, half_ranks_ ? &*half_ranks_ : nullptr);
+}
 
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
@@ -137,13 +205,13 @@ void VolumeCpu::voxelize() {
   voxels_ = std::move(fresh);
   passages_are_old_ = true;
   if (ranks_) halo_.emplace(*ranks_, voxels_);
-  if (coarse) half_voxels_ = voxelize_cpu(scene_, half_grid(grid_), mipmaps_);
-  if (coarse && white) bound_white_pockets(half_voxels_);
+  if (coarse) voxelize_half(white);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
     pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
   } else {
-    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks());
+    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks(),
+                                    half_ranks_ ? &*half_ranks_ : nullptr);
     if (bounces_) {
       bounces_->set_transport(std::move(transport));
     } else {

@@ -21,7 +21,9 @@ class VolumeCpu {
   /// @throws Error(usage) for options that make no sense, Error(over_limit) above options.memory_limit, and as
   ///   make_grid.
   /// @param ranks  that hold the volume together: this one then has a part, and all do everything below together, to
-  ///   the same numbers as one alone. Null: there is one.
+  ///   the same numbers as one alone. Parts are of as many blocks each; where one of them would need more than
+  ///   options.memory_limit, ranks are lean (RanksOfVolume), and where that is not enough parts are cut so that the
+  ///   largest need is least. Null: there is one.
   VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks = nullptr);
   ~VolumeCpu();
 
@@ -49,6 +51,7 @@ class VolumeCpu {
   void irradiate();
 
   const Grid& grid() const { return grid_; }
+  const VolumeOptions& options() const { return options_; }
   const VoxelGrid& voxels() const { return voxels_; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
   /// Null where there is one rank.
@@ -66,12 +69,15 @@ class VolumeCpu {
   size_t bytes() const;
 
  private:
+  void share_out(const Ranks& ranks);
+  void voxelize_half(bool white);
+
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;
   BounceRules rules_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
-  std::optional<RanksOfVolume> ranks_;
+  std::optional<RanksOfVolume> ranks_, half_ranks_;
   std::optional<SideHalo> halo_;  // of voxels_
   VoxelGrid voxels_, half_voxels_;
   CellVolumes cells_;

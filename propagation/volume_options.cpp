@@ -39,6 +39,13 @@ BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene) {
   return rules;
 }
 
+bool lights_by_rays(const Scene& scene, const VolumeOptions& o) {
+  if (o.first_light != VolumeOptions::FirstLight::automatic) return o.first_light == VolumeOptions::FirstLight::rays;
+  size_t triangles = 0;
+  for (const Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
+  return triangles <= VolumeOptions::kMostTrianglesOfRays;
+}
+
 const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
   const bool carries = o.scheme.scheme == Scheme::ordinates && o.source == VolumeOptions::Source::lights;
   return carries ? scene.sky.get() : nullptr;
@@ -53,6 +60,8 @@ void refuse_on_gpu(const VolumeOptions& o) {
                                                   o.grid_cells, VolumeOptions::kMaxDenseGridCells));
   if (o.voxelization.method == VoxelizationMethod::single_pass && o.voxelization.interleave)
     throw Error(ExitCode::usage, "voxel.interleave=1 takes turns at axes, which voxel.method=single_pass has not");
+  if (o.first_light == VolumeOptions::FirstLight::faces)
+    throw Error(ExitCode::usage, "--first-light faces: the GPU has shadow maps for that; use --backend cpu");
   if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
     throw Error(ExitCode::usage,
                 "conservative.coarse=1: the GPU has no coarse grid; leave it out, or use --backend cpu");
@@ -74,8 +83,6 @@ void refuse_of_ranks(const VolumeOptions& o) {
     throw Error(ExitCode::usage,
                 "the papers' schemes run as one rank; of several there are --scheme ordinates and "
                 "conservative");
-  if (o.scheme.scheme == Scheme::conservative && o.scheme.coarse_start.value_or(false))
-    throw Error(ExitCode::usage, "the coarse grid of conservative is for one rank: leave it out, or use one rank");
 }
 
 void warn_of_answer(const std::string& scene, const VolumeOptions& o, const BounceReport& report, size_t pocket_cells,

@@ -12,6 +12,8 @@
 
 namespace volgi {
 
+class Ranks;
+
 /// Options of a volume, on either backend.
 struct VolumeOptions {
   int grid_cells = 32;               // along the longest axis, 1 ... kMaxGridCells
@@ -32,6 +34,11 @@ struct VolumeOptions {
   /// light and the arrival of emission; what is left is bounces 2 ... N of punctual light and 1 ... N of emission
   /// (docs/theory.md#composition).
   enum class Source { lights, first_bounce } source = Source::lights;
+  /// By what the light of lamps finds the sides that it falls on, on the CPU: rays through all triangles, in Embree's
+  /// tree of them, or the grid's own faces (light_in/face_light_cpu.h). automatic: rays, up to kMostTrianglesOfRays.
+  enum class FirstLight { automatic, rays, faces } first_light = FirstLight::automatic;
+  /// That hold the volume together, on the CPU; null: there is one.
+  const Ranks* ranks = nullptr;
   /// Refused above it [bytes]; none: no limit.
   std::optional<size_t> memory_limit;
 
@@ -40,6 +47,8 @@ struct VolumeOptions {
   /// schemes that keep light in every cell.
   static constexpr int kMaxDenseGridCells = 256;
   static constexpr int kMaxDirectionsGpu = 128;
+  /// Of which Embree's tree takes some 2 GiB (docs/results/mpi.md).
+  static constexpr size_t kMostTrianglesOfRays = size_t(1) << 24;
   static constexpr int kPulseIterations = 64;  // Gaitatzes 2010, table 1, "room"
 };
 
@@ -47,6 +56,9 @@ struct VolumeOptions {
 /// line.
 BounceRules bounce_rules(const VolumeOptions& options, float largest_albedo);
 BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene);
+
+/// Whether the light of lamps finds its sides by rays (VolumeOptions::first_light).
+bool lights_by_rays(const Scene& scene, const VolumeOptions& options);
 
 /// The sky whose light streams into the volume: of `ordinates` alone, and not after a first bounce on the screen, which
 /// has it. Null: none.

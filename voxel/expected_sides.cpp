@@ -52,8 +52,8 @@ class FaceMarks {
       }
     }
   }
-  /// @param blocks  with sides: those of the marked faces' cells become true.
-  void count(ExpectedSides& sum, std::vector<bool>& blocks) const {
+  /// @param blocks  of the marked faces' cells: their sides are added.
+  void count(ExpectedSides& sum, std::vector<std::uint32_t>& blocks) const {
     for (size_t block = 0; block < met_.size(); ++block) {
       if (met_[block] == nullptr) continue;
       const glm::ivec3 first = kLeafCells * of_faces_.block(block);
@@ -67,13 +67,13 @@ class FaceMarks {
  private:
   using Block = std::array<char, kLeafVolume>;  // by leaf_offset
 
-  void count(char met, glm::ivec3 cell, ExpectedSides& sum, std::vector<bool>& blocks) const {
+  void count(char met, glm::ivec3 cell, ExpectedSides& sum, std::vector<std::uint32_t>& blocks) const {
     ++sum.faces;
     if (met != CENTRE && beside_a_centre(cell)) return;
     for (int side = 0; side < 2; ++side, cell[axis_] -= 1) {
       if (glm::any(glm::lessThan(cell, first_cell_)) || glm::any(glm::greaterThanEqual(cell, last_cell_))) continue;
       ++sum.sides;
-      blocks[blocks_.index(cell / kLeafCells)] = true;
+      ++blocks[blocks_.index(cell / kLeafCells)];
     }
   }
   char met_at(glm::ivec3 place) const {
@@ -153,10 +153,11 @@ ExpectedSides expected_sides(const Scene& scene, const Grid& grid) {
   return expected_sides(scene, grid, {glm::ivec3(0), leaf_blocks(grid)});
 }
 
-ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& part) {
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& part,
+                             std::vector<std::uint32_t>* by_block) {
   ExpectedSides sum;
   if (part.empty()) return sum;
-  std::vector<bool> blocks(part.count(), false);
+  std::vector<std::uint32_t> blocks(part.count(), 0);
   for (int axis = 0; axis < 3; ++axis) {
     FaceMarks marks(grid, axis, part);
     for (const Mesh& mesh : scene.meshes) {
@@ -167,7 +168,8 @@ ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBo
     }
     marks.count(sum, blocks);
   }
-  sum.blocks = size_t(std::count(blocks.begin(), blocks.end(), true));
+  sum.blocks = blocks.size() - size_t(std::count(blocks.begin(), blocks.end(), 0u));
+  if (by_block != nullptr) *by_block = std::move(blocks);
   return sum;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "core/scene.h"
 #include "voxel/grid.h"
@@ -19,7 +21,8 @@ struct ExpectedSides {
 /// Cost: a step for each crossing, nine a face; memory: half a KiB a block of 8^3 cells with
 /// surfaces, 8 bytes a block.
 ExpectedSides expected_sides(const Scene& scene, const Grid& grid);
-/// Of these blocks alone.
-ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& blocks);
+/// Of these blocks alone. @param by_block  not null: what each has, by its index in the box.
+ExpectedSides expected_sides(const Scene& scene, const Grid& grid, const BlockBox& blocks,
+                             std::vector<std::uint32_t>* by_block = nullptr);
 
 }  // namespace volgi

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -29,12 +31,21 @@ struct BlockBox {
 
 /// How a grid's blocks are dealt out to ranks: columns along x, y and z divided (Koch, Baker and Alcouffe 1992), so
 /// that a sweep goes through all of a rank's cells before it leaves it by x. Any number of ranks and any grid: parts
-/// along an axis differ by one block at most, and where there are fewer blocks than parts some are empty.
+/// along an axis differ by one block at most, unless they are evened out, and where there are fewer blocks than parts
+/// some are empty.
 class Decomposition {
  public:
   /// Of so many ranks, as many along y and z as leave the smallest faces between parts.
   Decomposition(glm::ivec3 blocks, int ranks);
   Decomposition(glm::ivec3 blocks, glm::ivec2 ranks_along_yz);
+
+  /// As many parts along y and z, cut where the heaviest weighs least, or nearly: of either axis in turn, the best cuts
+  /// for those of the other.
+  /// @param weights  of columns of blocks, y fastest.
+  Decomposition evened_out(const std::vector<std::int64_t>& weights) const;
+
+  /// The same parts of a grid of these blocks, about twice as many: cut at twice the places.
+  Decomposition doubled(glm::ivec3 blocks) const;
 
   glm::ivec3 blocks() const { return blocks_; }
   int count() const { return along_.x * along_.y; }
@@ -46,10 +57,14 @@ class Decomposition {
   int owner(glm::ivec3 block) const;
   /// The rank beside one along y (axis 1) or z (axis 2); -1 at the rim.
   int beside(int rank, int axis, int step) const;
+  /// Of the part that has most along each axis.
+  glm::ivec2 widest() const;
 
  private:
+  using Cuts = std::vector<int>;  // of an axis: where parts begin, and the end
   glm::ivec3 blocks_;
   glm::ivec2 along_{1};
+  std::array<Cuts, 2> cuts_;  // y, z
 };
 
 }  // namespace volgi

@@ -10,6 +10,7 @@ namespace volgi {
 struct RanksOfVolume {
   const Ranks& ranks;
   Decomposition decomposition;
+  bool lean = false;  // keeps as little at once as can be, also where ranks then wait for each other longer
 
   BlockBox part() const { return decomposition.part(ranks.rank()); }
 };

@@ -144,7 +144,8 @@ SweepModel model_of(const Decomposition& d, const SweepPipeline& pipeline, const
           width * part.size().z * face,
           width * part.size().y * face,
           m.latency_s,
-          m.bytes_per_s};
+          m.bytes_per_s,
+          pipeline.octants_at_once()};
 }
 
 /// What is measured in turns, since a machine that others use as well is slower at times.
@@ -195,6 +196,7 @@ nlohmann::json scale(const Ranks& ranks, const Messages& messages, float length,
   return {{"cells", {p.grid.cells.x, p.grid.cells.y, p.grid.cells.z}},
           {"ranks_y_z", {of.decomposition.along_yz().x, of.decomposition.along_yz().y}},
           {"chunks", sweep.pipeline().chunks()},
+          {"octants_at_once", sweep.pipeline().octants_at_once()},
           {"directions", p.choice.directions},
           {"one_s", median(turns.one)},
           {"own_part_s", median(turns.own)},
@@ -228,9 +230,16 @@ nlohmann::json on_paper(double ns_per_unknown) {
         const double face = double(sweep::kBlockFace) * 3.0 * choice.directions / 8.0 * sizeof(float);
         const double task = double(width) * part.y * part.z * sweep::kBlockVolume * choice.directions / 8.0 * 3.0 *
                             ns_per_unknown * 1e-9;
-        const SweepModel m{d.along_yz(),          (blocks.x + width - 1) / width, task,
-                           width * part.z * face, width * part.y * face,          kLatency,
-                           kBytesPerSecond};
+        // What waits for the next chunk is most of what an octant keeps.
+        const bool many = 8.0 * part.y * part.z * face > double(SweepPipeline::kManyFlowsOfRank);
+        const SweepModel m{d.along_yz(),
+                           (blocks.x + width - 1) / width,
+                           task,
+                           width * part.z * face,
+                           width * part.y * face,
+                           kLatency,
+                           kBytesPerSecond,
+                           many ? 4 : 8};
         const SweepPrediction p = predict(m);
         if (p.efficiency > found.efficiency) best = m, found = p;
       }
@@ -275,7 +284,7 @@ std::string scaling_row(const char* name, const nlohmann::json& s, int ranks) {
   const auto& cells = s["cells"];
   const auto waits = s["waits"].get<std::vector<double>>();
   return fmt::format(
-      "{} scaling, {} x {} x {} cells, {} directions, {} ranks as {} x {}, {} chunks{}\n"
+      "{} scaling, {} x {} x {} cells, {} directions, {} ranks as {} x {}, {} chunks, {} octants at once{}\n"
       "  one rank {:.1f} ms, all {:.1f} ms, its own part alone {:.1f} ms; {:.3f} ns an unknown and core, {:.1f} MB "
       "sent "
       "by the first rank\n"
@@ -283,6 +292,7 @@ std::string scaling_row(const char* name, const nlohmann::json& s, int ranks) {
       "  waiting, share of the time by rank: {:.3f}\n",
       name, cells[0].get<int>(), cells[1].get<int>(), cells[2].get<int>(), s["directions"].get<int>(), ranks,
       s["ranks_y_z"][0].get<int>(), s["ranks_y_z"][1].get<int>(), s["chunks"].get<int>(),
+      s["octants_at_once"].get<int>(),
       s["oversubscribed"].get<bool>() ? " (more ranks than cores: efficiency is of the cores)" : "",
       1e3 * s["one_s"].get<double>(), 1e3 * s["sweep_s"].get<double>(), 1e3 * s["own_part_s"].get<double>(),
       s["ns_per_unknown"].get<double>(), s["megabytes_sent"].get<double>(), 100.0 * s["efficiency"].get<double>(),

@@ -116,6 +116,7 @@ openvdb::MetaMap file_metadata(const ExportCommand& command, const VolumeOptions
   if (options.scheme.scheme == Scheme::ordinates)
     number("directions", choose_ordinates(grid.cells, options.scheme).directions);
   number("sh_order", options.scheme.sh_order);
+  if (!scene.lights.empty() && !lights_by_rays(scene, options)) text("first_light", "faces");
   text("bounces", options.bounces ? std::to_string(*options.bounces) : "all");
   const BounceReport& report = computed.report();
   number("orders", report.orders);

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "apps/volgi/frame_stats.h"
 #include "apps/volgi/frame_times.h"
 #include "apps/volgi/parse_number.h"
+#include "apps/volgi/program_ranks.h"
 #include "apps/volgi/scene_options.h"
 #include "apps/volgi/shared_frames.h"
 #include "core/atomic_file.h"
@@ -25,6 +27,7 @@
 #include "core/scene_source.h"
 #include "core/virtual_light_list.h"
 #include "core/visibility/openness.h"
+#include "propagation/light_in/volume_service.h"
 #include "screen/base/image_from_texture.h"
 #include "screen/frame/frame.h"
 #include "screen/frame/registry.h"
@@ -59,6 +62,7 @@ struct RenderCommand {
 
   std::filesystem::path lights_file() const { return dump / "virtual_lights.json"; }
   void check_outputs() const;
+  void join_ranks(screen::FrameOptions& options) const;
   TimedFrames render_still(screen::Frame& picture, const Scene& loaded, gl::PassTimer& timer, bool software,
                            Image& image);
   TimedFrames climb(std::optional<screen::Frame>& picture, screen::FrameOptions& options, const Scene& loaded,
@@ -314,15 +318,42 @@ nlohmann::json RenderCommand::numbers(const screen::Frame& picture, const screen
   return numbers;
 }
 
+/// Volumes of several ranks: on the CPU, of scenes that stand still.
+void RenderCommand::join_ranks(screen::FrameOptions& options) const {
+  const Ranks* ranks = program_ranks();
+  if (ranks == nullptr) return;
+  if (!animate.empty()) throw Error(ExitCode::usage, "--animate is for one rank; processes share frames by --share");
+  if (options.backend == screen::Backend::gpu)
+    throw Error(ExitCode::usage, "--backend gpu is for one rank; several hold a volume on the CPU");
+  options.backend = screen::Backend::cpu;
+  options.of<VolumeOptions>().ranks = ranks;
+}
+
+/// Of the first of several ranks: the others serve it while this lives.
+class LeadsRanks {
+ public:
+  LeadsRanks() : exceptions_(std::uncaught_exceptions()) {}
+  /// Where something has failed, all are ended in another way.
+  ~LeadsRanks() {
+    if (program_ranks() != nullptr && std::uncaught_exceptions() == exceptions_) end_volume_service(*program_ranks());
+  }
+  LeadsRanks(const LeadsRanks&) = delete;
+  LeadsRanks& operator=(const LeadsRanks&) = delete;
+
+ private:
+  int exceptions_;
+};
+
 int RenderCommand::run() {
-  set_quiet(quiet);
+  set_quiet(quiet || !is_first_rank());
   read_exposure();
   if (quality() == screen::Quality::truth && (!animate.empty() || frames > 1))
     throw Error(ExitCode::usage, "--quality truth climbs to one picture: neither --animate nor --frames go with it");
   frame.volume.limit_threads();
   screen::FrameOptions options = frame.frame_options(scene.size());
+  join_ranks(options);
   const FrameTimes times = animate.empty() ? FrameTimes{scene.time_s} : parse_frame_times(animate);
-  check_outputs();
+  if (is_first_rank()) check_outputs();
   if (!share.empty()) shared_.emplace(share);
   const SceneSource source(scene.scene_path, scene.file.reading);
   const WorldBox box = whole_animation ? source.whole_bounds() : box_of(source, times);
@@ -330,6 +361,11 @@ int RenderCommand::run() {
   video.show(loaded, animate.empty() ? scene.time_s : times.at(0));
   const Camera camera = scene.camera(loaded);  // says so now if there is none
   light(loaded, camera);
+  if (!is_first_rank()) {
+    serve_volume(loaded, *program_ranks());
+    return int(ExitCode::done);
+  }
+  const LeadsRanks leads;
   FrameCommandOptions::Fitted fitted = fit(loaded, 0, options);
   const gl::Context context(device.context);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());

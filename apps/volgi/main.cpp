@@ -40,7 +40,7 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
   try {
     if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return exit_code;
     const std::string command = argc > 1 ? argv[1] : "";
-    if (!command.starts_with("-") && command != "export" && command != "bench")
+    if (!command.starts_with("-") && command != "export" && command != "render" && command != "bench")
       app::refuse_several_ranks(command.c_str());
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& e) {

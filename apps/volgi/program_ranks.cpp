@@ -130,7 +130,7 @@ int ProgramRanks::say_failure() const {
 void refuse_several_ranks(const char* command) {
   if (program_ranks() != nullptr)
     throw Error(ExitCode::usage,
-                fmt::format("volgi {} runs as one rank; of several there are export and bench mpi", command));
+                fmt::format("volgi {} runs as one rank; of several there are export, render and bench mpi", command));
 }
 
 }  // namespace volgi::app

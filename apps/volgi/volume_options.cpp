@@ -33,6 +33,10 @@ GridBox box_of(const std::vector<double>& bounds, const Scene& scene) {
   return box;
 }
 
+const std::map<std::string, VolumeOptions::FirstLight> kFirstLights = {{"auto", VolumeOptions::FirstLight::automatic},
+                                                                       {"rays", VolumeOptions::FirstLight::rays},
+                                                                       {"faces", VolumeOptions::FirstLight::faces}};
+
 float longest_edge(const GridBox& box) {
   const glm::vec3 e = box.max - box.min;
   return std::max({e.x, e.y, e.z});
@@ -124,14 +128,21 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
                   "passes over the volume: for each order with --bounces, else in all with reflections in flight "
                   "together (until under 0.2 % of the light is left; 64 for the papers' schemes)")
       ->check(CLI::Range(1, 100000));
+  command
+      .add_option(
+          "--first-light", first_light,
+          "how the light of lamps finds the volume's surfaces, on the CPU: rays through all triangles, or faces "
+          "of the grid, which need no tree of the triangles; auto: rays up to 16 million triangles")
+      ->check(CLI::IsMember(kFirstLights))
+      ->capture_default_str();
   command.add_option("--memory-limit", memory_limit, "refuse a volume that needs more bytes, such as 512M or 2G");
   command.add_option("--threads", threads, "threads of the CPU (all)")->check(CLI::Range(1, 1024));
 }
 
 bool VolumeCommandOptions::given() const {
   const VolumeCommandOptions usual;
-  return scheme != usual.scheme || bounces || iterations || directions || sh_order != usual.sh_order || grid_cells ||
-         !bounds.empty() || !memory_limit.empty();
+  return scheme != usual.scheme || first_light != usual.first_light || bounces || iterations || directions ||
+         sh_order != usual.sh_order || grid_cells || !bounds.empty() || !memory_limit.empty();
 }
 
 VolumeOptions VolumeCommandOptions::volume_options() const {
@@ -142,6 +153,7 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
   o.scheme.sh_order = sh_order;
   o.bounces = bounces;
   o.iterations = iterations;
+  o.first_light = kFirstLights.at(first_light);
   if (!memory_limit.empty()) o.memory_limit = parse_bytes(memory_limit);
   if (directions && scheme != "ordinates") throw Error(ExitCode::usage, "--directions belongs to --scheme ordinates");
   if (sh_order == 2 && scheme == "ordinates")

@@ -12,10 +12,9 @@ class App;
 namespace volgi::app {
 
 /// What every command that makes a volume takes: --grid, --bounds, --scheme, --sh-order, --directions, --bounces,
-/// --iterations,
-/// --memory-limit, --threads.
+/// --iterations, --first-light, --memory-limit, --threads.
 struct VolumeCommandOptions {
-  std::string scheme = "ordinates";
+  std::string scheme = "ordinates", first_light = "auto";
   std::optional<int> bounces, iterations, directions, threads;
   int sh_order = 1;
   std::optional<int> grid_cells;

@@ -10,9 +10,7 @@
 
 namespace volgi {
 
-namespace {
-
-struct Layer {
+struct LightRays::Layer {
   shared::PunctualLight light;
   shared::ReflectiveShadowLayer view;
   int layer_count;
@@ -20,6 +18,9 @@ struct Layer {
   std::uint32_t first_texel;  // of this layer among all: what BLEND is hashed with
 };
 
+namespace {
+
+template <class Layer>
 std::vector<Layer> layers_of(const Scene& scene, int texels_on_edge) {
   std::vector<Layer> layers;
   std::uint32_t texels = 0;
@@ -38,12 +39,8 @@ std::vector<Layer> layers_of(const Scene& scene, int texels_on_edge) {
   return layers;
 }
 
-struct TexelRay {
-  glm::vec3 origin, direction;
-  glm::vec3 power;  // before the range window [W]
-};
-
 /// Mean of a spot's falloff over the texel, 4 x 4 points: a cone's edge is often thinner than a texel.
+template <class Layer>
 float mean_falloff(const Layer& layer, glm::ivec2 texel) {
   constexpr int kPoints = 4;
   float sum = 0.0f;
@@ -64,13 +61,15 @@ glm::vec2 place_in_texel(glm::ivec2 texel) {
   return {float(glm::fract(0.7548776662466927 * n)), float(glm::fract(0.5698402909980532 * n))};
 }
 
-TexelRay ray_through(const Layer& layer, glm::ivec2 texel) {
+template <class Layer>
+LightRay ray_through(const Layer& layer, glm::ivec2 texel) {
   const glm::vec2 uv = (glm::vec2(texel) + place_in_texel(texel)) * (2.0f / float(layer.resolution)) - 1.0f;
   const shared::ReflectiveShadowLayer& view = layer.view;
   const glm::vec2 middle = (glm::vec2(texel) + 0.5f) * (2.0f / float(layer.resolution)) - 1.0f;
   const float measure = shared::rsm_texel_measure(view, layer.resolution, middle.x, middle.y);
-  TexelRay ray{view.origin, view.forward, layer.light.intensity * measure};
-  if (view.directional != 0) {
+  const std::uint32_t seed = layer.first_texel + std::uint32_t(texel.y * layer.resolution + texel.x);
+  LightRay ray{view.origin, view.forward, layer.light.intensity * measure, seed, layer.light, view.directional != 0};
+  if (ray.from_afar) {
     ray.origin = shared::rsm_position_from_uvz(view, glm::vec3(uv, 0.0f));
     return ray;
   }
@@ -79,52 +78,56 @@ TexelRay ray_through(const Layer& layer, glm::ivec2 texel) {
   return ray;
 }
 
-/// What the light sees through one texel; no flux: nothing, or another layer counts it.
-FluxSample texel_flux(const EmbreeScene& embree, const Layer& layer, glm::ivec2 texel) {
-  FluxSample none{};
-  if (!shared::rsm_texel_counts(layer.layer_count, layer.resolution, texel.x, texel.y)) return none;
-  const TexelRay ray = ray_through(layer, texel);
-  if (ray.power == glm::vec3(0.0f)) return none;
-  const std::uint32_t seed = layer.first_texel + std::uint32_t(texel.y * layer.resolution + texel.x);
+/// What the light sees along a ray; no flux: nothing.
+FluxSample ray_flux(const EmbreeScene& embree, const LightRay& ray) {
   RayHit hit;
-  if (!embree.intersect(ray.origin, ray.direction, std::numeric_limits<float>::infinity(), seed, hit)) return none;
+  if (!embree.intersect(ray.origin, ray.direction, std::numeric_limits<float>::infinity(), ray.seed, hit)) return {};
   const Scene& scene = embree.scene();
   const SurfacePoint at = surface_point(scene, scene.meshes[hit.mesh], hit.triangle, hit.u, hit.v);
-  const float window = layer.view.directional != 0 ? 1.0f : shared::range_window(layer.light, hit.distance);
   const bool front = glm::dot(at.geometric_normal, ray.direction) < 0.0f;
-  return {at.position, front ? at.geometric_normal : -at.geometric_normal, ray.power * window * at.albedo * hit.tint};
-}
-
-/// One row of texels of a layer.
-std::vector<FluxSample> row_flux(const EmbreeScene& embree, const Layer& layer, int row) {
-  std::vector<FluxSample> samples;
-  for (int x = 0; x < layer.resolution; ++x) {
-    const FluxSample sample = texel_flux(embree, layer, {x, row});
-    if (sample.flux != glm::vec3(0.0f)) samples.push_back(sample);
-  }
-  return samples;
+  return {at.position, front ? at.geometric_normal : -at.geometric_normal,
+          ray.power_after(hit.distance) * at.albedo * hit.tint};
 }
 
 /// By row of all layers; rows first, first + step, ... alone.
 std::vector<std::vector<FluxSample>> rows_flux(const EmbreeScene& embree, int texels_on_edge, size_t first,
                                                size_t step) {
-  assert(texels_on_edge >= 16);
-  struct Row {
-    const Layer* layer;
-    int row;
-  };
-  const std::vector<Layer> layers = layers_of(embree.scene(), texels_on_edge);
-  std::vector<Row> rows;
-  for (const Layer& layer : layers) {
-    for (int row = 0; row < layer.resolution; ++row) rows.push_back({&layer, row});
-  }
-  std::vector<std::vector<FluxSample>> found(rows.size());
-  oneapi::tbb::parallel_for(first, rows.size(), step,
-                            [&](size_t i) { found[i] = row_flux(embree, *rows[i].layer, rows[i].row); });
+  const LightRays rays(embree.scene(), texels_on_edge);
+  std::vector<std::vector<FluxSample>> found(rays.rows());
+  oneapi::tbb::parallel_for(first, found.size(), step, [&](size_t row) {
+    rays.for_each_of_row(row, [&](const LightRay& ray) {
+      const FluxSample sample = ray_flux(embree, ray);
+      if (sample.flux != glm::vec3(0.0f)) found[row].push_back(sample);
+    });
+  });
   return found;
 }
 
 }  // namespace
+
+glm::vec3 LightRay::power_after(float distance) const {
+  return power * (from_afar ? 1.0f : shared::range_window(light, distance));
+}
+
+LightRays::LightRays(const Scene& scene, int texels_on_edge) : layers_(layers_of<Layer>(scene, texels_on_edge)) {
+  assert(texels_on_edge >= 16);
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    for (int row = 0; row < layers_[i].resolution; ++row) rows_.push_back({i, row});
+  }
+}
+
+LightRays::~LightRays() = default;
+
+/// Texels that another layer counts are left out.
+void LightRays::for_each_of_row(size_t row, const std::function<void(const LightRay&)>& take) const {
+  const Layer& layer = layers_[rows_[row].layer];
+  for (int x = 0; x < layer.resolution; ++x) {
+    const glm::ivec2 texel(x, rows_[row].row);
+    if (!shared::rsm_texel_counts(layer.layer_count, layer.resolution, texel.x, texel.y)) continue;
+    const LightRay ray = ray_through(layer, texel);
+    if (ray.power != glm::vec3(0.0f)) take(ray);
+  }
+}
 
 std::vector<FluxSample> light_flux(const EmbreeScene& embree, int texels_on_edge) {
   std::vector<FluxSample> samples;

@@ -1,10 +1,45 @@
 #pragma once
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/light.h"
 #include "core/visibility/embree_scene.h"
 
 namespace volgi {
+
+/// A ray of a light, and what it carries.
+struct LightRay {
+  glm::vec3 origin, direction;
+  glm::vec3 power;     // that leaves [W]
+  std::uint32_t seed;  // its own: what it meets by chance is hashed with
+  shared::PunctualLight light;
+  bool from_afar;  // a sun's
+
+  /// What is left of it after some way [m].
+  glm::vec3 power_after(float distance) const;
+};
+
+/// The rays of the scene's punctual lights through the texels of their reflective shadow maps' layers, by row of
+/// texels: those of light_flux(), for whoever else meets surfaces. They do not depend on what they meet.
+class LightRays {
+ public:
+  /// @param texels_on_edge  as light_flux().
+  LightRays(const Scene& scene, int texels_on_edge);
+  ~LightRays();
+
+  size_t rows() const { return rows_.size(); }
+  void for_each_of_row(size_t row, const std::function<void(const LightRay&)>& take) const;
+
+ private:
+  struct Layer;
+  struct Row {
+    size_t layer;
+    int row;
+  };
+  std::vector<Layer> layers_;
+  std::vector<Row> rows_;
+};
 
 /// What surfaces lit by the scene's punctual lights reflect, found without GL: rays from every light through the texels
 /// of its reflective shadow map's layers (core/light_layers.h). Each ray carries the power I dω (a sun's: E dA) that is

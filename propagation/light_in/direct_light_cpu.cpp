@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/visibility/light_flux.h"
+#include "propagation/light_in/face_light_cpu.h"
 #include "voxel/emitter_pieces.h"
 
 namespace volgi {
@@ -22,16 +23,16 @@ int light_texels(const Grid& grid) {
 
 }  // namespace
 
-DirectLightCpu::DirectLightCpu(const Scene& scene) : scene_(scene) { scene_moved(); }
+DirectLightCpu::DirectLightCpu(const Scene& scene, bool by_rays) : scene_(scene), by_rays_(by_rays) { scene_moved(); }
 
 void DirectLightCpu::scene_moved() {
   embree_.reset();
-  if (!scene_.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene_);
+  if (by_rays_ && !scene_.lights.empty()) embree_ = std::make_unique<EmbreeScene>(scene_);
 }
 
-const EmbreeScene& DirectLightCpu::embree() const {
-  if (!embree_) embree_ = std::make_unique<EmbreeScene>(scene_);
-  return *embree_;
+const EmbreeScene* DirectLightCpu::embree() const {
+  if (by_rays_ && !embree_) embree_ = std::make_unique<EmbreeScene>(scene_);
+  return embree_.get();
 }
 
 SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
@@ -41,8 +42,10 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
   const std::vector<FluxSample> pieces = emitter_pieces(scene_, voxels.grid());
   flux.emits = !pieces.empty();
   deposit(voxels, pieces, flux.emitted, flux.lost);
-  if (!scene_.lights.empty())
-    deposit(voxels, light_flux(*embree_, light_texels(voxels.grid())), flux.punctual, flux.lost);
+  if (scene_.lights.empty()) return flux;
+  const int texels = light_texels(voxels.grid());
+  deposit(voxels, by_rays_ ? light_flux(*embree_, texels) : face_light(scene_, voxels, texels), flux.punctual,
+          flux.lost);
   return flux;
 }
 
@@ -56,15 +59,16 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels, const RanksOfVolume& rank
   std::vector<NumberedFluxSample> shared_out;
   for (size_t i = rank; i < pieces.size(); i += count) shared_out.push_back({pieces[i], i});
   deposit(voxels, ranks, shared_out, flux.emitted, flux.lost);
-  if (!scene_.lights.empty()) {
-    const auto lit = light_flux(*embree_, light_texels(voxels.grid()), int(rank), int(count));
-    deposit(voxels, ranks, lit, flux.punctual, flux.lost);
-  }
+  if (scene_.lights.empty()) return flux;
+  const int texels = light_texels(voxels.grid());
+  const auto lit =
+      by_rays_ ? light_flux(*embree_, texels, int(rank), int(count)) : face_light(scene_, voxels, ranks, texels);
+  deposit(voxels, ranks, lit, flux.punctual, flux.lost);
   return flux;
 }
 
 SideFlux direct_light(const Scene& scene, const VolumeCpu& volume) {
-  const DirectLightCpu light(scene);
+  const DirectLightCpu light(scene, lights_by_rays(scene, volume.options()));
   return volume.ranks() != nullptr ? light.flux(volume.voxels(), *volume.ranks()) : light.flux(volume.voxels());
 }
 

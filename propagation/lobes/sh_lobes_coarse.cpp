@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 
+#include "propagation/side_loops.h"
 #include "shaders/shared/grid.shared.h"
 #include "voxel/side_search.h"
 
@@ -55,12 +57,21 @@ int on_same_side(const VoxelGrid& coarse, int found, glm::vec3 fine_centre) {
 
 }  // namespace
 
-CoarseLink::CoarseLink(const VoxelGrid& fine, const VoxelGrid& coarse, int coefficients)
+CoarseLink::CoarseLink(const VoxelGrid& fine, const VoxelGrid& coarse, int coefficients,
+                       const std::optional<OfRanks>& ranks)
     : coefficients_(coefficients),
-      fine_numbers_(fine.grid().cells),
-      coarse_numbers_(coarse.grid().cells),
+      fine_blocks_(fine.blocks()),
+      known_sides_(coarse.sides().size()),
+      fine_numbers_(fine.held(), fine.part()),
+      coarse_numbers_(coarse.held(), coarse.part()),
       exceptions_(size_t(coarse_numbers_.count())) {
+  if (ranks) {
+    ranks_.emplace(*ranks);
+    fine_halo_.emplace(ranks->fine, fine);
+    coarse_halo_.emplace(ranks->coarse, coarse);
+  }
   sort_cells(coarse);
+  if (ranks_) ask_others();
   share_sides(fine, coarse);
   find_beside(fine);
 }
@@ -74,7 +85,8 @@ CoarseLink::Exceptions& CoarseLink::exceptions(int leaf) {
   return *e;
 }
 
-/// Fine cells behind a wall of their coarse cell move to the coarse cell across it.
+/// Fine cells behind a wall of their coarse cell move to the coarse cell across it, one after the other in the order of
+/// blocks, which is the same for any ranks.
 void CoarseLink::sort_cells(const VoxelGrid& coarse) {
   const Grid& grid = coarse.grid();
   int last = -1;
@@ -87,14 +99,59 @@ void CoarseLink::sort_cells(const VoxelGrid& coarse) {
       const glm::vec3 centre = glm::vec3(cell) + 0.25f + 0.5f * glm::vec3(in_cell);
       const Side* wall = wall_before(coarse, cell, centre);
       if (wall == nullptr) continue;
-      const int leaf = coarse_numbers_.number(cell / kLeafCells);
-      auto& out = exceptions(leaf).moved_out[size_t(leaf_offset(cell))];
-      out = std::uint8_t(out | (1 << child));
+      const glm::ivec3 block = cell / kLeafCells;
+      if (coarse.part().contains(block)) {
+        auto& out = exceptions(coarse_numbers_.number(block)).moved_out[size_t(leaf_offset(cell))];
+        out = std::uint8_t(out | (1 << child));
+      }
       const glm::ivec3 to = cell + shared::face_step(wall->face);
-      if (!shared::cell_inside(grid, to) || wall_before(coarse, to, centre) != nullptr) continue;  // in the wall
-      exceptions(coarse_numbers_.number(to / kLeafCells)).moved_in.push_back({2 * cell + in_cell, leaf_offset(to)});
+      if (!shared::cell_inside(grid, to) || !coarse.part().contains(to / kLeafCells)) continue;
+      if (wall_before(coarse, to, centre) != nullptr) continue;  // in the wall
+      exceptions(coarse_numbers_.number(to / kLeafCells))
+          .moved_in.push_back({2 * cell + in_cell, leaf_offset(to), block_index(coarse.blocks(), block)});
     }
   }
+  for (auto& e : exceptions_) {
+    if (e)
+      std::stable_sort(e->moved_in.begin(), e->moved_in.end(),
+                       [](const Moved& a, const Moved& b) { return a.block < b.block; });
+  }
+}
+
+/// For the lobes of fine cells that move in from others' parts.
+void CoarseLink::ask_others() {
+  const Ranks& ranks = ranks_->fine.ranks;
+  std::vector<std::vector<glm::ivec3>> wanted(size_t(ranks.count()));
+  std::vector<std::pair<size_t, Moved*>> awaited;
+  for (auto& e : exceptions_) {
+    if (!e) continue;
+    for (Moved& moved : e->moved_in) {
+      const glm::ivec3 block = moved.from / kLeafCells;
+      if (glm::any(glm::greaterThanEqual(block, fine_blocks_)) || fine_numbers_.part().contains(block)) continue;
+      const auto rank = size_t(ranks_->fine.decomposition.owner(block));
+      moved.answer = int(wanted[rank].size());
+      wanted[rank].push_back(moved.from);
+      awaited.emplace_back(rank, &moved);
+    }
+  }
+  // Answers come rank after rank.
+  std::vector<int> first(wanted.size(), 0);
+  for (size_t rank = 1; rank < wanted.size(); ++rank) first[rank] = first[rank - 1] + int(wanted[rank - 1].size());
+  for (const auto& [rank, moved] : awaited) moved->answer += first[rank];
+  asked_ = exchange_values(ranks, wanted);
+}
+
+void CoarseLink::fetch_moved(const LobeVolume& fine, const LobeKernels& kernels) {
+  if (!ranks_) return;
+  std::vector<std::vector<float>> to(asked_.size());
+  for (size_t rank = 0; rank < asked_.size(); ++rank) {
+    to[rank].resize(asked_[rank].size() * moved_floats());
+    for (size_t i = 0; i < asked_[rank].size(); ++i)
+      moved_lobe(fine, kernels, asked_[rank][i], &to[rank][i * moved_floats()]);
+  }
+  answers_.clear();
+  for (const auto& from : exchange_values(ranks_->fine.ranks, to))
+    answers_.insert(answers_.end(), from.begin(), from.end());
 }
 
 void CoarseLink::share_sides(const VoxelGrid& fine, const VoxelGrid& coarse) {
@@ -109,30 +166,61 @@ void CoarseLink::share_sides(const VoxelGrid& fine, const VoxelGrid& coarse) {
       shares_[i].shares[k] = found.weights[k] * side.face_m2;
     }
   });
-  std::vector<double> all(coarse.side_count(), 0.0);
-  for (const Share& s : shares_) {
-    for (int k = 0; k < 3; ++k) {
-      if (s.sides[k] >= 0) all[size_t(s.sides[k])] += double(s.shares[k]);
-    }
-  }
+  const std::vector<double> all = sums_of_shares(fine, coarse);
   for (Share& s : shares_) {
     for (int k = 0; k < 3; ++k) {
       const double sum = s.sides[k] >= 0 ? all[size_t(s.sides[k])] : 0.0;
       s.shares[k] = sum > 0.0 ? float(double(s.shares[k]) / sum) : 0.0f;
     }
   }
-  for (std::uint32_t j = 0; j < all.size(); ++j) {
+  for (std::uint32_t j = 0; j < coarse.side_count(); ++j) {
     if (all[j] <= 0.0) alone_.push_back(j);
   }
+}
+
+/// By coarse side, of what all fine sides show of it, in the order of the blocks of fine sides.
+std::vector<double> CoarseLink::sums_of_shares(const VoxelGrid& fine, const VoxelGrid& coarse) const {
+  std::vector<double> all(known_sides_, 0.0);
+  if (!ranks_) {
+    for (const Share& s : shares_) {
+      for (int k = 0; k < 3; ++k) {
+        if (s.sides[k] >= 0) all[size_t(s.sides[k])] += double(s.shares[k]);
+      }
+    }
+    return all;
+  }
+  struct Given {
+    int block, cell, face;
+    float share;
+  };
+  const RanksOfVolume& ranks = ranks_->coarse;
+  std::vector<std::vector<Given>> to(size_t(ranks.ranks.count()));
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const glm::ivec3 block = shared::cell_coord(fine.grid(), fine.sides()[i].cell) / kLeafCells;
+    for (int k = 0; k < 3; ++k) {
+      if (shares_[i].sides[k] < 0) continue;
+      const Side& side = coarse.sides()[size_t(shares_[i].sides[k])];
+      const int owner = ranks.decomposition.owner(shared::cell_coord(coarse.grid(), side.cell) / kLeafCells);
+      to[size_t(owner)].push_back({block_index(fine.blocks(), block), side.cell, side.face, shares_[i].shares[k]});
+    }
+  }
+  std::vector<Given> here;
+  for (const auto& from : exchange_values(ranks.ranks, to)) here.insert(here.end(), from.begin(), from.end());
+  std::stable_sort(here.begin(), here.end(), [](const Given& a, const Given& b) { return a.block < b.block; });
+  for (const Given& g : here) {
+    const glm::uvec2 own = coarse.cell_sides(shared::cell_coord(coarse.grid(), g.cell));
+    all[shared::side_index(own, g.face)] += double(g.share);
+  }
+  coarse_halo_->fetch(all);
+  return all;
 }
 
 /// The sides on the same face of the cells beside, but for where something stands between.
 void CoarseLink::find_beside(const VoxelGrid& fine) {
   beside_.assign(fine.side_count(), glm::ivec4(-1));
-  shown_m2_.resize(fine.side_count());
+  for (const Side& side : fine.sides()) shown_m2_.push_back(side.face_m2);
   tbb::parallel_for(size_t(0), beside_.size(), [&](size_t i) {
     const Side& side = fine.sides()[i];
-    shown_m2_[i] = side.face_m2;
     const glm::ivec3 cell = shared::cell_coord(fine.grid(), side.cell);
     for (int k = 0; k < 4; ++k) {
       const int way = 2 * (((side.face >> 1) + 1 + (k >> 1)) % 3) + (k & 1);
@@ -165,11 +253,12 @@ std::vector<int> CoarseLink::reached(const LobeVolume& fine) const {
   for (const int n : fine.leaves()) lit[size_t(coarse_numbers_.number(fine_numbers_.block(n) / 2))] = 1;
   std::vector<int> leaves;
   for (int n = 0; n < coarse_numbers_.count(); ++n) {
-    // Cells that move in come from next door at most.
+    if (!coarse_numbers_.own(n)) continue;
+    // Cells that move in come from next door at most; whether there is light at others' nobody asks.
     bool any = lit[size_t(n)] != 0;
     for (int face = 0; face < 6 && !any && exceptions_[size_t(n)]; ++face) {
       const int beside = coarse_numbers_.beside(n, face);
-      any = beside >= 0 && lit[size_t(beside)] != 0;
+      any = beside >= 0 && (lit[size_t(beside)] != 0 || !coarse_numbers_.own(beside));
     }
     if (any) leaves.push_back(n);
   }
@@ -182,7 +271,7 @@ void CoarseLink::gather(const LobeVolume& fine, const LobeKernels& kernels, int 
   for (int i = 0; i < 8; ++i) {
     const glm::ivec3 octant(i >> 2, (i >> 1) & 1, i & 1);
     const glm::ivec3 block = 2 * coarse_numbers_.block(coarse_leaf) + octant;
-    if (glm::any(glm::greaterThanEqual(block, fine_numbers_.blocks()))) continue;
+    if (glm::any(glm::greaterThanEqual(block, fine_blocks_))) continue;
     const float* lobes = fine.leaf(fine_numbers_.number(block));
     if (lobes == LobeVolume::dark()) continue;
     alignas(64) float carried[9 * kLobeBands * kLobeLeafCells];
@@ -205,39 +294,59 @@ void CoarseLink::add_children(const float* lobes, glm::ivec3 octant, const Excep
 }
 
 void CoarseLink::add_moved(const LobeVolume& fine, const LobeKernels& kernels, const Moved& moved, float* out) const {
-  const glm::ivec3 block = moved.from / kLeafCells;
-  if (glm::any(glm::greaterThanEqual(block, fine_numbers_.blocks()))) return;  // beyond an odd grid
-  const float* lobes = fine.leaf(fine_numbers_.number(block));
-  const int from = leaf_offset(moved.from);
+  if (glm::any(glm::greaterThanEqual(moved.from / kLeafCells, fine_blocks_))) return;  // beyond an odd grid
+  float own[9 * kLobeBands];
+  const float* lobe = own;
+  if (moved.answer >= 0) {
+    lobe = &answers_[size_t(moved.answer) * moved_floats()];
+  } else {
+    moved_lobe(fine, kernels, moved.from, own);
+  }
+  for (int band = 0; band < kLobeBands; ++band) {
+    for (int k = 0; k < coefficients_; ++k) out[lobe_block(k, band) + moved.to] += lobe[k * kLobeBands + band];
+  }
+}
+
+/// What a fine cell carries, by coefficient and band.
+void CoarseLink::moved_lobe(const LobeVolume& fine, const LobeKernels& kernels, glm::ivec3 from, float* lobe) const {
+  const float* lobes = fine.leaf(fine_numbers_.number(from / kLeafCells));
+  const int at = leaf_offset(from);
   float carried[kLobeBands] = {};
   for (int face = 0; face < 6; ++face) {
     float power[kLobeBands][8];
-    kernels.face_powers(lobes, face, from, 1, power);
+    kernels.face_powers(lobes, face, at, 1, power);
     for (int band = 0; band < kLobeBands; ++band) carried[band] += power[band][0];
   }
   for (int band = 0; band < kLobeBands; ++band) {
-    const float first = lobes[lobe_block(0, band) + from];
-    for (int k = 0; k < coefficients_ && first > 0.0f; ++k)
-      out[lobe_block(k, band) + moved.to] += carried[band] / first * lobes[lobe_block(k, band) + from];
+    const float first = lobes[lobe_block(0, band) + at];
+    for (int k = 0; k < coefficients_; ++k)
+      lobe[k * kLobeBands + band] = first > 0.0f ? carried[band] / first * lobes[lobe_block(k, band) + at] : 0.0f;
   }
 }
 
 glm::dvec3 CoarseLink::spread(std::span<const glm::vec4> coarse_received, std::span<glm::vec4> received) const {
-  std::vector<glm::vec4> stepped(shares_.size()), even(shares_.size());
+  std::vector<glm::vec4> known(coarse_received.begin(), coarse_received.end());
+  known.resize(known_sides_);
+  if (ranks_) coarse_halo_->fetch(known);
+  std::vector<glm::vec4> stepped(shown_m2_.size()), even(shown_m2_.size());
   tbb::parallel_for(size_t(0), shares_.size(), [&](size_t i) {
     const Share& s = shares_[i];
     glm::vec3 power(0.0f);
     for (int k = 0; k < 3; ++k) {
-      if (s.shares[k] > 0.0f) power += s.shares[k] * glm::vec3(coarse_received[size_t(s.sides[k])]);
+      if (s.shares[k] > 0.0f) power += s.shares[k] * glm::vec3(known[size_t(s.sides[k])]);
     }
     stepped[i] = glm::vec4(power, 0.0f);
   });
+  if (ranks_) fine_halo_->fetch(stepped);
   even_out(0, stepped, even);
+  if (ranks_) fine_halo_->fetch(even);
   even_out(1, even, stepped);
   tbb::parallel_for(size_t(0), shares_.size(), [&](size_t i) { received[i] += stepped[i]; });
-  glm::dvec3 lost(0.0);
-  for (const std::uint32_t j : alone_) lost += glm::dvec3(coarse_received[j]);
-  return lost;
+  std::array<ExactSum, 3> lost;
+  for (const std::uint32_t j : alone_) {
+    for (size_t band = 0; band < 3; ++band) lost[band].add(double(known[j][int(band)]));
+  }
+  return SideSums::over_ranks(lost, ranks_ ? &ranks_->fine.ranks : nullptr);
 }
 
 size_t CoarseLink::bytes() const {

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "propagation/sweep/sweep_order.h"
+
 namespace volgi {
 
 namespace {
@@ -16,6 +18,7 @@ struct Octant {
 };
 struct Rank {
   double free_s = 0.0;
+  int through = 0;  // octants
   std::array<Octant, 8> octants;
 };
 
@@ -47,10 +50,19 @@ class Simulation {
   }
   static int up(int octant, int axis) { return ((octant >> (axis + 1)) & 1) != 0 ? 1 : -1; }
 
+  /// Whether a rank takes a chunk of an octant from the one before it: it has begun it, and has planes for the one that
+  /// it works on and the next.
+  bool takes(int rank, int place, int octant, int chunk) const {
+    const Rank& r = ranks_[size_t(rank)];
+    return place < r.through + m_.octants_at_once && chunk < r.octants[size_t(octant)].done + 2;
+  }
+
   /// The ready task with the most stages behind it; -1: none.
   int best(int rank, double now) const {
     int best = -1, most = -1;
-    for (int octant = 0; octant < 8; ++octant) {
+    const int begun = std::min(8, ranks_[size_t(rank)].through + m_.octants_at_once);
+    for (int place = 0; place < begun; ++place) {
+      const int octant = kOppositeCorners[size_t(place)];
       const Octant& o = ranks_[size_t(rank)].octants[size_t(octant)];
       if (o.done == m_.chunks) continue;
       int stages = m_.chunks - o.done;
@@ -59,6 +71,8 @@ class Simulation {
         const auto& arrives = o.arrives[size_t(axis)];
         const bool here = int(arrives.size()) > o.done && arrives[size_t(o.done)] <= now;
         ready = ready && (beside(rank, axis, -up(octant, axis)) < 0 || here);
+        const int to = beside(rank, axis, up(octant, axis));  // its plane of two chunks before must have gone
+        ready = ready && (to < 0 || o.done < 2 || takes(to, place, octant, o.done - 2));
         const int at = axis == 0 ? rank % m_.along_yz.x : rank / m_.along_yz.x;
         stages += up(octant, axis) > 0 ? m_.along_yz[axis] - 1 - at : at;
       }
@@ -77,11 +91,14 @@ class Simulation {
       if (beside(rank, axis, -up(octant, axis)) >= 0) end += copy_s;
       if (to[size_t(axis)] >= 0) end += copy_s;
     }
-    ++r.octants[size_t(octant)].done;
+    if (++r.octants[size_t(octant)].done == m_.chunks) ++r.through;
     r.free_s = end;
     last_ = std::max(last_, end);
     events_.push({end, rank});
     for (int axis = 0; axis < 2; ++axis) {
+      for (const int step : {-1, 1}) {  // they may have waited for room here
+        if (const int other = beside(rank, axis, step); other >= 0) events_.push({end, other});
+      }
       if (to[size_t(axis)] < 0) continue;
       const double arrives = end + m_.latency_s;
       ranks_[size_t(to[size_t(axis)])].octants[size_t(octant)].arrives[size_t(axis)].push_back(arrives);

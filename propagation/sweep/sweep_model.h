@@ -12,6 +12,7 @@ struct SweepModel {
   double z_bytes = 0.0;
   double latency_s = 0.0;     // of a message
   double bytes_per_s = 1e10;  // of one; sender and receiver are busy with it
+  int octants_at_once = 8;    // that a rank has room for (SweepPipeline)
 };
 
 struct SweepPrediction {
@@ -20,8 +21,9 @@ struct SweepPrediction {
   int least_stages = 0;     // of tasks one after another, if messages took no time (Adams et al. 2013)
 };
 
-/// Goes through the sweep task by task, as the pipeline does, with times of the model. Cost: some 10^7 tasks in ten
-/// seconds.
+/// Goes through the sweep task by task, as the pipeline does, with times of the model: a rank begins octants in the
+/// same order, has room for so many, and sends no more chunks ahead than the next one has planes for. Cost: some 10^7
+/// tasks in ten seconds.
 SweepPrediction predict(const SweepModel& model);
 
 /// The least number of stages of all eight octants: 8 chunks, and along each axis with P ranks P - 2 while the middle

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "propagation/sweep/sweep_order.h"
 
 namespace volgi {
 
@@ -13,61 +14,87 @@ constexpr int kMostChunkBlocks = 2;  // of several ranks: more would keep those 
 
 bool flows_up(int octant, int axis) { return ((octant >> axis) & 1) != 0; }
 
+constexpr std::array<int, 8> kInOrder{0, 1, 2, 3, 4, 5, 6, 7};
+
 }  // namespace
 
 /// As wide as a chunk may be without its planes, two through y and two through z, being more to keep than what waits
 /// for the next chunk, a face for each row. The same for all ranks: by the largest part.
 int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& part) {
   if (ranks == nullptr) return std::max(1, part.size().x);
-  const glm::ivec2 along = ranks->decomposition.along_yz();
-  const glm::ivec3 blocks = ranks->decomposition.blocks();
-  const int y = (blocks.y + along.x - 1) / along.x, z = (blocks.z + along.y - 1) / along.y;
-  return std::clamp(y * z / (2 * (y + z)), 1, std::min(kMostChunkBlocks, blocks.x));
+  const glm::ivec2 widest = ranks->decomposition.widest();
+  return std::clamp(widest.x * widest.y / (2 * (widest.x + widest.y)), 1,
+                    std::min(kMostChunkBlocks, ranks->decomposition.blocks().x));
 }
 
-SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, size_t many_flows)
+int SweepPipeline::slots_of(const RanksOfVolume* ranks, size_t bytes_of_octant, AtOnce at_once) {
+  if (ranks == nullptr) return 8 * bytes_of_octant > at_once.many_flows ? 1 : 8;
+  if (at_once.of_ranks > 0) return at_once.of_ranks;
+  if (ranks->lean) return 2;
+  return 8 * bytes_of_octant > kManyFlowsOfRank ? 4 : 8;
+}
+
+SweepPipeline::SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once)
     : ranks_(ranks),
       size_(part.size()),
       face_floats_(face_floats),
       chunk_blocks_(chunk_blocks_of(ranks, part)),
-      in_turn_(take_turns(ranks, octant_bytes(ranks, part, face_floats), many_flows)) {
+      slots_(size_t(slots_of(ranks, octant_bytes(ranks, part, face_floats), at_once))) {
   chunks_ = (size_.x + chunk_blocks_ - 1) / chunk_blocks_;
+  make_flows(part);
+  const size_t rows = size_t(size_.y) * size_t(size_.z);
+  for (Slot& slot : slots_) {
+    for (size_t a = 0; a < 2; ++a) {
+      const Flow& flow = flows_[0][a];  // ranks are beside for all octants or for none
+      for (size_t i = 0; i < (flow.beside() ? 2u : 1u); ++i)
+        slot.planes[a][i].resize(header_bytes(flow.faces) + flow.faces * face_floats_ * sizeof(float));
+    }
+    if (chunks_ > 1) slot.carried.resize(rows * face_floats_);
+    if (chunks_ > 1) slot.carried_lit.resize(rows);
+  }
+}
+
+void SweepPipeline::make_flows(const BlockBox& part) {
   for (int octant = 0; octant < 8; ++octant) {
     for (int axis = 1; axis <= 2; ++axis) {
       Flow& flow = flows_[size_t(octant)][size_t(axis - 1)];
       flow.faces = faces_of(part, chunk_blocks_, axis);
-      if (ranks != nullptr) {
-        const int up = flows_up(octant, axis) ? 1 : -1;
-        flow.from = ranks->decomposition.beside(ranks->ranks.rank(), axis, -up);
-        flow.to = ranks->decomposition.beside(ranks->ranks.rank(), axis, up);
-      }
-      if (in_turn_ && octant > 0) continue;
-      for (size_t i = 0; i < (flow.beside() ? 2u : 1u); ++i)
-        flow.planes[i].resize(header_bytes(flow.faces) + flow.faces * face_floats_ * sizeof(float));
+      if (ranks_ == nullptr) continue;
+      const int up = flows_up(octant, axis) ? 1 : -1;
+      flow.from = ranks_->decomposition.beside(ranks_->ranks.rank(), axis, -up);
+      flow.to = ranks_->decomposition.beside(ranks_->ranks.rank(), axis, up);
     }
-    const size_t rows = size_t(size_.y) * size_t(size_.z);
-    if (chunks_ > 1) carried_[size_t(octant)].resize(rows * face_floats_);
-    if (chunks_ > 1) carried_lit_[size_t(octant)].resize(rows);
   }
 }
 
 void SweepPipeline::start(bool in_order) {
-  in_order_ = in_order || in_turn_;
+  in_order_ = in_order;
+  order_ = in_order || alone() ? kInOrder : kOppositeCorners;
   done_ = {};
+  slot_.fill(-1);
+  next_ = 0;
   for (auto& octant : flows_) {
     for (Flow& flow : octant) flow.come = 0;
+  }
+  begin_octants();
+}
+
+/// As many as there is room for.
+void SweepPipeline::begin_octants() {
+  for (int slot = 0; slot < int(slots_.size()) && next_ < 8; ++slot) {
+    if (std::find(slot_.begin(), slot_.end(), slot) == slot_.end()) slot_[size_t(order_[size_t(next_++)])] = slot;
   }
 }
 
 SweepPipeline::Plane SweepPipeline::plane(Task task, int axis) {
-  Flow& flow = flows_[in_turn_ ? 0 : size_t(task.octant)][size_t(axis - 1)];
-  std::byte* bytes = flow.planes[flow.place(task.chunk)].data();
+  const Flow& flow = flows_[size_t(task.octant)][size_t(axis - 1)];
+  std::byte* bytes = buffer(task.octant, axis - 1, flow.place(task.chunk)).data();
   return {reinterpret_cast<unsigned char*>(bytes), reinterpret_cast<float*>(bytes + header_bytes(flow.faces)),
           flow.faces};
 }
 
 float* SweepPipeline::carried(int octant, size_t row) {
-  return chunks_ > 1 ? carried_[size_t(octant)].data() + row * face_floats_ : nullptr;
+  return chunks_ > 1 ? slot_of(octant).carried.data() + row * face_floats_ : nullptr;
 }
 
 /// Lit faces to the front. @return  bytes of the message.
@@ -96,20 +123,35 @@ void SweepPipeline::unpack(Buffer& plane, size_t faces) const {
   }
 }
 
+/// @return  whether anything has. An octant that is through makes room.
+bool SweepPipeline::take_what_left(int octant) {
+  bool any = false;
+  auto& flows = flows_[size_t(octant)];
+  for (Flow& flow : flows) {
+    for (MessagePtr& leaving : flow.leaving) {
+      if (leaving == nullptr || !leaving->done()) continue;
+      leaving.reset();
+      any = true;
+    }
+  }
+  if (done_[size_t(octant)] == chunks_ && !flows[0].leaves() && !flows[1].leaves()) {
+    slot_[size_t(octant)] = -1;
+    begin_octants();
+  }
+  return any;
+}
+
 /// Takes what has come and asks for the next, where there is room for it. @return  whether anything has.
 bool SweepPipeline::progress() {
   bool any = false;
-  for (int octant = 0; octant < 8; ++octant) {
+  for (const int octant : order_) any |= begun(octant) && take_what_left(octant);
+  for (const int octant : order_) {
+    if (!begun(octant)) continue;
     for (int a = 0; a < 2; ++a) {
       Flow& flow = flows_[size_t(octant)][size_t(a)];
-      for (MessagePtr& leaving : flow.leaving) {
-        if (leaving == nullptr || !leaving->done()) continue;
-        leaving.reset();
-        any = true;
-      }
       if (flow.from < 0 || flow.faces == 0) continue;
       if (flow.coming != nullptr && flow.coming->done()) {
-        unpack(flow.planes[flow.place(flow.come)], flow.faces);
+        unpack(buffer(octant, a, flow.place(flow.come)), flow.faces);
         flow.coming.reset();
         ++flow.come;
         any = true;
@@ -117,7 +159,7 @@ bool SweepPipeline::progress() {
       const size_t place = flow.place(flow.come);
       const bool room = flow.come < done_[size_t(octant)] + 2 && flow.leaving[place] == nullptr;
       if (flow.coming == nullptr && flow.come < chunks_ && room)
-        flow.coming = ranks_->ranks.receive(flow.from, 2 * octant + a, flow.planes[place]);
+        flow.coming = ranks_->ranks.receive(flow.from, 2 * octant + a, buffer(octant, a, place));
     }
   }
   return any;
@@ -125,7 +167,7 @@ bool SweepPipeline::progress() {
 
 bool SweepPipeline::is_ready(int octant) {
   const int chunk = done_[size_t(octant)];
-  if (chunk == chunks_) return false;
+  if (chunk == chunks_ || !begun(octant)) return false;
   for (const Flow& flow : flows_[size_t(octant)]) {
     if (flow.faces == 0) continue;
     const bool here = flow.from >= 0 ? flow.come > chunk : flow.leaving[flow.place(chunk)] == nullptr;
@@ -159,7 +201,7 @@ std::vector<SweepPipeline::Task> SweepPipeline::next(size_t most) {
     if (ranks_ != nullptr) progress();
     std::vector<Task> ready;
     bool all_done = true;
-    for (int octant = 0; octant < 8; ++octant) {
+    for (const int octant : order_) {
       if (done_[size_t(octant)] == chunks_) continue;
       if (is_ready(octant)) ready.push_back({octant, done_[size_t(octant)]});
       all_done = false;
@@ -182,19 +224,18 @@ void SweepPipeline::finished(Task task) {
     Flow& flow = flows_[size_t(task.octant)][size_t(a)];
     if (flow.to < 0 || flow.faces == 0) continue;
     const size_t place = flow.place(task.chunk);
-    const size_t bytes = pack(flow.planes[place], flow.faces);
-    flow.leaving[place] = ranks_->ranks.send(flow.to, 2 * task.octant + a, std::span(flow.planes[place]).first(bytes));
+    Buffer& plane = buffer(task.octant, a, place);
+    const size_t bytes = pack(plane, flow.faces);
+    flow.leaving[place] = ranks_->ranks.send(flow.to, 2 * task.octant + a, std::span(plane).first(bytes));
     traffic_.messages += 1;
     traffic_.bytes += bytes;
   }
+  take_what_left(task.octant);
 }
 
 void SweepPipeline::end() {
   if (ranks_ == nullptr) return;
-  const auto under_way = [](const auto& octant) {
-    return std::any_of(octant.begin(), octant.end(),
-                       [](const Flow& flow) { return flow.leaving[0] != nullptr || flow.leaving[1] != nullptr; });
-  };
+  const auto under_way = [](const auto& octant) { return octant[0].leaves() || octant[1].leaves(); };
   for (;;) {
     progress();
     if (std::none_of(flows_.begin(), flows_.end(), under_way)) return;
@@ -217,14 +258,14 @@ size_t SweepPipeline::octant_bytes(const RanksOfVolume* ranks, const BlockBox& p
 
 size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
   const size_t bytes = octant_bytes(ranks, part, face_floats);
-  return (take_turns(ranks, bytes, kManyFlows) ? 1 : 8) * bytes;
+  return size_t(slots_of(ranks, bytes, AtOnce())) * bytes;
 }
 
 size_t SweepPipeline::bytes() const {
   size_t bytes = 0;
-  for (size_t octant = 0; octant < 8; ++octant) {
-    for (const Flow& flow : flows_[octant]) bytes += flow.planes[0].size() + flow.planes[1].size();
-    bytes += carried_[octant].size() * sizeof(float) + carried_lit_[octant].size();
+  for (const Slot& slot : slots_) {
+    for (const Planes& planes : slot.planes) bytes += planes[0].size() + planes[1].size();
+    bytes += slot.carried.size() * sizeof(float) + slot.carried_lit.size();
   }
   return bytes;
 }

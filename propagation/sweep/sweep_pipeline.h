@@ -15,15 +15,18 @@ namespace volgi {
 /// one by one in the same planes where those of eight would take more than kManyFlows.
 ///
 /// The KBA algorithm (Koch, Baker and Alcouffe 1992): a rank has columns of blocks along x; for each chunk of them it
-/// waits for the outflow of the ranks before it along y and z, sweeps, and hands its own on at once. All four corners
-/// of the ranks start together, with two octants each. Of the tasks that are ready a rank takes the one with the most
-/// stages still to come behind it, its own chunks and ranks downwind (the "depth of graph" priority, with which Adams
-/// et al. 2013 have the least number of stages there can be). Octants depend on nothing of each other, so the order
-/// changes no number.
+/// waits for the outflow of the ranks before it along y and z, sweeps, and hands its own on at once. Two opposite
+/// corners of the ranks start together, with two octants each, then the other two: a rank has room for some octants at
+/// once (octants_at_once()), and begins the next one, in an order that is the same everywhere, when one has left it.
+/// (The first that is not through everywhere has room on all ranks, and all that it waits for is under way: so none
+/// waits for ever, whatever room each has.) Of the tasks that are ready a rank takes the one with the most stages still
+/// to come behind it, its own chunks and ranks downwind (the "depth of graph" priority, with which Adams et al. 2013
+/// have the least number of stages there can be). Octants depend on nothing of each other, so the order changes no
+/// number.
 ///
-/// Memory: of every octant, or of the one whose turn it is, what goes through y and z in a chunk, twice where it comes
-/// from or goes to another rank, and where there is more than one chunk what waits for the next one, a face for each
-/// row of blocks. Messages hold the faces that light goes through, and a byte each.
+/// Memory: of as many octants as are under way at once, what goes through y and z in a chunk, twice where it comes from
+/// or goes to another rank, and where there is more than one chunk what waits for the next one, a face for each row of
+/// blocks. Messages hold the faces that light goes through, and a byte each.
 class SweepPipeline {
  public:
   struct Task {
@@ -36,14 +39,23 @@ class SweepPipeline {
     size_t faces;
   };
 
-  static constexpr size_t kManyFlows = size_t(128) << 20;  // bytes
+  static constexpr size_t kManyFlows = size_t(128) << 20;       // bytes, of one rank
+  static constexpr size_t kManyFlowsOfRank = size_t(16) << 20;  // of each of several
 
-  /// @param ranks  null: there is one. @param face_floats  of a block's face. @param many_flows  for tests, in place of
-  /// kManyFlows.
-  SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, size_t many_flows = kManyFlows);
+  /// How many octants are under way at once: of one rank all eight, or one where they would take more than many_flows;
+  /// of several ranks eight, or four, with hardly more waiting, where they would take more than kManyFlowsOfRank, or
+  /// two where those are to be lean (propagation/sweep/sweep_model.h says what that costs).
+  struct AtOnce {
+    size_t many_flows = kManyFlows;
+    int of_ranks = 0;  // 0: as above
+  };
+
+  /// @param ranks  null: there is one. @param face_floats  of a block's face. @param at_once  for tests.
+  SweepPipeline(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once);
 
   int chunks() const { return chunks_; }
   int chunk_blocks() const { return chunk_blocks_; }
+  int octants_at_once() const { return int(slots_.size()); }
   bool alone() const { return ranks_ == nullptr; }
   /// All ranks: a new sweep of all octants. @param in_order  one octant after the other, also where they need not.
   void start(bool in_order);
@@ -55,7 +67,7 @@ class SweepPipeline {
   bool at_rim(int octant, int axis) const { return flows_[size_t(octant)][size_t(axis - 1)].from < 0; }
   /// What goes through x from chunk to chunk of a row of blocks; null where there is one chunk.
   float* carried(int octant, size_t row);
-  unsigned char& carried_lit(int octant, size_t row) { return carried_lit_[size_t(octant)][row]; }
+  unsigned char& carried_lit(int octant, size_t row) { return slot_of(octant).carried_lit[row]; }
   /// Its outflow goes to the next ranks.
   void finished(Task task);
   /// All has been handed on.
@@ -72,29 +84,39 @@ class SweepPipeline {
  private:
   using Buffer = std::vector<std::byte, tbb::cache_aligned_allocator<std::byte>>;
   using MessagePtr = std::unique_ptr<Ranks::Message>;
+  using Planes = std::array<Buffer, 2>;  // of even and odd chunks; one where no rank is beside
+  /// What is kept of an octant while it is under way.
+  struct Slot {
+    std::array<Planes, 2> planes;  // through y, through z
+    std::vector<float, tbb::cache_aligned_allocator<float>> carried;
+    std::vector<unsigned char> carried_lit;
+  };
   /// Of one octant through one axis.
   struct Flow {
     int from = -1, to = -1;             // ranks
     size_t faces = 0;                   // of a plane
-    std::array<Buffer, 2> planes;       // of even and odd chunks; one where no rank is beside
-    std::array<MessagePtr, 2> leaving;  // of these
+    std::array<MessagePtr, 2> leaving;  // of the slot's planes
     MessagePtr coming;
     int come = 0;  // chunks
 
     bool beside() const { return from >= 0 || to >= 0; }
     size_t place(int chunk) const { return beside() ? size_t(chunk & 1) : 0; }
+    bool leaves() const { return leaving[0] != nullptr || leaving[1] != nullptr; }
   };
   static size_t header_bytes(size_t faces) { return (faces + 63) / 64 * 64; }
   static int chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& part);
   static size_t octant_bytes(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats);
-  /// Whether octants take turns in the planes of one.
-  static bool take_turns(const RanksOfVolume* ranks, size_t bytes_of_octant, size_t many_flows) {
-    return ranks == nullptr && 8 * bytes_of_octant > many_flows;
-  }
+  static int slots_of(const RanksOfVolume* ranks, size_t bytes_of_octant, AtOnce at_once);
   static size_t faces_of(const BlockBox& part, int chunk_blocks, int axis) {
     return size_t(chunk_blocks) * size_t(part.size()[axis == 1 ? 2 : 1]);
   }
 
+  bool begun(int octant) const { return slot_[size_t(octant)] >= 0; }
+  Slot& slot_of(int octant) { return slots_[size_t(slot_[size_t(octant)])]; }
+  Buffer& buffer(int octant, int a, size_t place) { return slot_of(octant).planes[size_t(a)][place]; }
+  void make_flows(const BlockBox& part);
+  void begin_octants();
+  bool take_what_left(int octant);
   bool progress();
   bool is_ready(int octant);
   int stages_behind(int octant) const;
@@ -106,11 +128,12 @@ class SweepPipeline {
   glm::ivec3 size_;  // of the part
   size_t face_floats_;
   int chunk_blocks_, chunks_;
-  bool in_turn_;
-  std::array<std::array<Flow, 2>, 8> flows_;  // by octant; through y, through z. in_turn_: the first has all planes
-  std::array<std::vector<float, tbb::cache_aligned_allocator<float>>, 8> carried_;
-  std::array<std::vector<unsigned char>, 8> carried_lit_;
-  std::array<int, 8> done_{};  // chunks
+  std::vector<Slot> slots_;
+  std::array<std::array<Flow, 2>, 8> flows_;  // by octant; through y, through z
+  std::array<int, 8> done_{};                 // chunks
+  std::array<int, 8> order_{};                // in which octants begin
+  int next_ = 0;                              // of these
+  std::array<int, 8> slot_{};                 // by octant; -1: it has not begun, or is through
   bool in_order_ = false;
   Traffic traffic_;
 };

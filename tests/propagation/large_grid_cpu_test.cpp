@@ -18,7 +18,7 @@ TEST(LargeGridCpu, OctantsInTurnGiveTheSameBytes) {
   const VoxelGrid voxels = make_voxels(cells, 0.25f, random_faces(cells, 0.7f, 0.1f, 5));
   const Powers sent = random_powers(voxels.side_count(), 6);
   for (const OrdinateChoice choice : {OrdinateChoice{24, Ordinates::step}, {128, Ordinates::characteristic}}) {
-    OrdinatesTransportCpu together(voxels, choice), in_turn(voxels, choice, nullptr, nullptr, 0);
+    OrdinatesTransportCpu together(voxels, choice), in_turn(voxels, choice, nullptr, nullptr, {.many_flows = 0});
     EXPECT_LT(in_turn.bytes(), together.bytes());
     Powers a(sent.size(), glm::vec4(0.0f)), b = a;
     for (int order = 0; order < 2; ++order) {  // the second finds nothing left over of the first

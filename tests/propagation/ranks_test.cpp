@@ -114,6 +114,20 @@ TEST(Ranks, OrdinatesBitEqualToOne) {
   }
 }
 
+// Without any tree of triangles: light meets faces of parts that are on other ranks.
+TEST(Ranks, FirstLightByFacesBitEqualToOne) {
+  const Scene scene = data_scene("cornell");
+  VolumeOptions options;
+  options.grid_cells = 40;
+  options.bounces = 2;
+  options.first_light = VolumeOptions::FirstLight::faces;
+  const Answer one = answer_of(scene, options, 1);
+  for (int ranks : {2, 3, 8}) expect_same(one, answer_of(scene, options, ranks), fmt::format("{}", ranks));
+  options.first_light = VolumeOptions::FirstLight::rays;
+  const Answer rays = answer_of(scene, options, 1);
+  EXPECT_NEAR(double(rays.report.sent.y) / double(one.report.sent.y), 1.0, 0.02);
+}
+
 // More ranks than blocks along an axis, cells that fill no last block, and a sky that streams in at the rim.
 TEST(Ranks, OddShapesUnderASky) {
   Scene scene;
@@ -189,6 +203,23 @@ TEST(Ranks, ConservativeBitEqualToOne) {
   }
 }
 
+// What is left of a pulse ends on the coarse grid, whose leaves are one rank's with their fine ones; in odd shapes, and
+// with half steps, which orders one by one begin with.
+TEST(Ranks, ConservativeCoarseGridBitEqualToOne) {
+  for (const int cells : {28, 45}) {
+    const Scene scene = data_scene(cells == 28 ? "cornell" : "room");
+    VolumeOptions options;
+    options.scheme.scheme = Scheme::conservative;
+    options.grid_cells = cells;
+    options.bounces = 1;
+    const Answer one = answer_of(scene, options, 1);
+    EXPECT_GT(one.report.passes, 30);
+    for (const int ranks : {2, 3, 4}) expect_same(one, answer_of(scene, options, ranks), fmt::format("{}", ranks));
+    options.iterations = 6;  // most of the light goes on coarsely
+    expect_same(answer_of(scene, options, 1), answer_of(scene, options, 4), "half steps");
+  }
+}
+
 // A run that has ended early goes on as another number of ranks, to what one rank has without any stop.
 TEST(Ranks, GoOnFromACheckpoint) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "volgi_ranks_checkpoint";
@@ -242,6 +273,42 @@ TEST(Ranks, MemoryOfARank) {
   run_ranks_in_threads(8, [&](const Ranks& of) { bytes_of(&of); });
   EXPECT_LE(double(largest), double(one) / 6.0) << one;
   RecordProperty("one_over_largest_of_8", std::to_string(double(one) / double(largest)));
+}
+
+// Under a limit that even parts would exceed, ranks keep less at once, and then are cut by what they need: the same
+// numbers, and a limit below that is refused.
+TEST(Ranks, LeanUnderALimit) {
+  const Scene scene = data_scene("cornell");
+  VolumeOptions options;
+  options.grid_cells = 64;
+  const Answer one = answer_of(scene, options, 1);
+  const auto largest_need = [&](VolumeOptions limited, bool& lean, bool& even) {
+    std::mutex mutex;
+    size_t largest = 0;
+    run_ranks_in_threads(4, [&](const Ranks& ranks) {
+      const VolumeCpu volume(scene, limited, &ranks);
+      const size_t need = bytes_expected_cpu(scene, volume.grid(), options, *volume.ranks());
+      const std::lock_guard lock(mutex);
+      largest = std::max(largest, need);
+      lean = volume.ranks()->lean;
+      even = volume.ranks()->part() == Decomposition(leaf_blocks(volume.grid()), 4).part(ranks.rank());
+    });
+    return largest;
+  };
+  bool lean = true, even = false;
+  size_t need = largest_need(options, lean, even);
+  EXPECT_TRUE(!lean && even);
+  for (const bool cut : {false, true}) {
+    options.memory_limit = need - 1;
+    const size_t less = largest_need(options, lean, even);
+    EXPECT_LT(less, need);
+    EXPECT_TRUE(lean);
+    EXPECT_EQ(even, !cut);
+    expect_same(one, answer_of(scene, options, 4), cut ? "cut by need" : "lean");
+    need = less;
+  }
+  options.memory_limit = need - 1;
+  EXPECT_THROW(answer_of(scene, options, 4), Error);
 }
 
 // One that throws does not leave the others waiting.

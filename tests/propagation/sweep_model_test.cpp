@@ -33,6 +33,24 @@ TEST(SweepModel, NearlyTheLeastStages) {
   }
 }
 
+// Room for fewer octants costs little where ranks are few: two of them lose nothing with four, four a stage in sixty.
+TEST(SweepModel, FewerOctantsAtOnce) {
+  SweepModel m = free_messages({1, 2}, 8);
+  m.octants_at_once = 4;
+  EXPECT_EQ(predict(m).sweep_s, 64.0);
+  m.along_yz = {2, 2};
+  EXPECT_EQ(predict(m).sweep_s, 65.0);
+  m.octants_at_once = 2;
+  EXPECT_LE(predict(m).sweep_s, 67.0);
+  double before = 0.0;
+  for (const int octants : {8, 4, 2, 1}) {
+    m = free_messages({8, 8}, 16);
+    m.octants_at_once = octants;
+    EXPECT_GT(predict(m).sweep_s, before);
+    before = predict(m).sweep_s;
+  }
+}
+
 // Two ranks, one chunk: four tasks each, then those that came over. With messages slower than that, all wait for one.
 TEST(SweepModel, MessagesCost) {
   SweepModel m = free_messages({1, 2}, 1);

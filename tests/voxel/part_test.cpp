@@ -35,6 +35,54 @@ TEST(Decomposition, LeastFacesBetweenParts) {
   EXPECT_EQ(Decomposition({16, 16, 2}, 8).along_yz(), glm::ivec2(8, 1));
 }
 
+// A heavy corner: the best cuts of either axis for those of the other, no worse than even ones, and all is dealt out.
+TEST(Decomposition, EvenedOutByWeight) {
+  const glm::ivec3 blocks(4, 12, 10);
+  std::vector<std::int64_t> weights(120, 10);
+  for (int z = 0; z < 10; ++z) {
+    for (int y = 0; y < 12; ++y) weights[size_t(y + 12 * z)] += (y < 3 ? 60 : 0) + (z < 3 ? 60 : 0);
+  }
+  const auto heaviest = [&](const Decomposition& d) {
+    std::int64_t most = 0, all = 0;
+    size_t dealt = 0;
+    for (int rank = 0; rank < d.count(); ++rank) {
+      const BlockBox part = d.part(rank);
+      std::int64_t sum = 0;
+      for (int z = part.first.z; z < part.last.z; ++z) {
+        for (int y = part.first.y; y < part.last.y; ++y) sum += weights[size_t(y + 12 * z)];
+      }
+      for (size_t i = 0; i < part.count(); ++i) EXPECT_EQ(d.owner(part.block(i)), rank);
+      dealt += part.count();
+      all += sum;
+      most = std::max(most, sum);
+    }
+    EXPECT_EQ(dealt, size_t(blocks.x * blocks.y * blocks.z));
+    return double(most) * d.count() / double(all);
+  };
+  for (const int ranks : {2, 4, 6, 9}) {
+    const Decomposition even(blocks, ranks), out = even.evened_out(weights);
+    EXPECT_EQ(out.along_yz(), even.along_yz());
+    EXPECT_LT(heaviest(out), heaviest(even)) << ranks;
+  }
+  // Of two by two the best of all cuts: the heaviest of four parts, by sums over their corners.
+  const auto sum = [&](int y0, int y1, int z0, int z1) {
+    std::int64_t s = 0;
+    for (int z = z0; z < z1; ++z) {
+      for (int y = y0; y < y1; ++y) s += weights[size_t(y + 12 * z)];
+    }
+    return s;
+  };
+  std::int64_t best = sum(0, 12, 0, 10);
+  for (int y = 0; y <= 12; ++y) {
+    for (int z = 0; z <= 10; ++z)
+      best = std::min(best, std::max({sum(0, y, 0, z), sum(y, 12, 0, z), sum(0, y, z, 10), sum(y, 12, z, 10)}));
+  }
+  EXPECT_EQ(heaviest(Decomposition(blocks, 4).evened_out(weights)), double(best) * 4 / double(sum(0, 12, 0, 10)));
+  // Uniform weights: even parts are the best there are.
+  EXPECT_EQ(heaviest(Decomposition(blocks, 4).evened_out(std::vector<std::int64_t>(120, 7))),
+            heaviest(Decomposition(blocks, 4)));
+}
+
 TEST(Decomposition, NeighboursAreMutual) {
   const Decomposition d({8, 8, 12}, 6);
   for (int rank = 0; rank < 6; ++rank) {

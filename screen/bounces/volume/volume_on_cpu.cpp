@@ -1,13 +1,16 @@
 #include <openvdb/openvdb.h>
 
+#include <cstring>
 #include <optional>
 
+#include "core/error.h"
 #include "core/gl/readback.h"
 #include "core/sample_sequence.h"
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/light_in/narrow_passages.h"
 #include "propagation/light_in/reflected_flux_cpu.h"
 #include "propagation/light_in/side_sky_cpu.h"
+#include "propagation/light_in/volume_service.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"
@@ -134,11 +137,17 @@ VolumeReport report_of(const VolumeCpu& volume) {
 }
 
 /// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded; after a first bounce on the screen
-/// its virtual lights are read back.
+/// its virtual lights are read back. Where ranks hold the volume together this is the one that leads (VolumeLead), and
+/// has of the others' sides those that its pixels read, but no light_in() of them.
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
-      : scene_(scene), options_(options), volume_(scene, options), gather_(size) {
+      : scene_(scene),
+        options_(options),
+        lead_(options.ranks != nullptr ? std::optional<VolumeLead>(std::in_place, *options.ranks, options)
+                                       : std::nullopt),
+        volume_(scene, options, options.ranks),
+        gather_(size) {
     look_at_geometry();
   }
 
@@ -150,24 +159,28 @@ class SidesOnCpu : public FrameVolume {
 
   void set_sample(int index) override {
     const glm::dvec3 shift = options_.grid_jitter ? grid_shift(std::uint64_t(index)) : glm::dvec3(0.0);
-    volume_.shift_grid(options_.grid_shift_cells + glm::vec3(shift));
+    shift_ = options_.grid_shift_cells + glm::vec3(shift);
+    if (!lead_) volume_.shift_grid(shift_);
   }
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) override {
     radiance_is_new_ = false;
+    if (lead_) {
+      lead_->run(shift_);
+      volume_.shift_grid(shift_);
+    }
     run_stages(volume_, timer, rays_for_passages(),
                [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
+    if (lead_) fetch_seen(gbuffer, timer);
     if (!sides_on_gpu()) {
       voxels_.grid = volume_.grid();
-      gather_.run_on_cpu(gbuffer, camera, volume_.voxels(), volume_.irradiance(),
+      gather_.run_on_cpu(gbuffer, camera, sides(), irradiance(),
                          first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
       return;
     }
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
-      upload(volume_.voxels(), voxels_);
-      upload_values(volume_.irradiance().direct, direct_);
-      upload_values(volume_.irradiance().indirect, indirect_);
+      upload_sides();
     }
     const bool apart = first_bounce == nullptr || first_is_apart();
     gather_.run(gbuffer, camera, {voxels_, direct_, indirect_, apart},
@@ -183,18 +196,20 @@ class SidesOnCpu : public FrameVolume {
   const gl::Texture& indirect() const override { return gather_.indirect(); }
   void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
   const VoxelGridGl& voxels() const override { return voxels_; }
-  bool sides_on_gpu() const override { return fit_on_gpu(volume_.grid(), volume_.voxels().side_count()); }
+  bool sides_on_gpu() const override {
+    return fit_on_gpu(volume_.grid(), lead_ ? totals_.sides : volume_.voxels().side_count());
+  }
   const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
   const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
   SentFlux light_in() const override {
-    if (!sides_on_gpu()) return {};
+    if (!sides_on_gpu() || lead_) return {};
     const SideFlux& flux = volume_.flux();
     upload_values(flux.punctual, punctual_flux_);
     upload_values(flux.emitted, emitted_flux_);
     return {flux.punctual.empty() ? nullptr : &punctual_flux_, flux.emitted.empty() ? nullptr : &emitted_flux_};
   }
   const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
-    if (options_.passes_per_run || !sides_on_gpu()) return nullptr;
+    if (options_.passes_per_run || !sides_on_gpu() || lead_) return nullptr;
     if (radiance_is_new_) return &radiance_;
     const auto scope = timer.scope("screen/bounces/volume/radiance");
     const RadianceVolume radiance = volume_.radiance();
@@ -206,8 +221,13 @@ class SidesOnCpu : public FrameVolume {
 
   VolumeReport report() const override {
     VolumeReport r = report_of(volume_);
-    r.memory_bytes = volume_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() + indirect_.bytes() +
-                     punctual_flux_.bytes() + emitted_flux_.bytes() + radiance_.bytes() + gather_.bytes();
+    if (lead_) {
+      r.sides = totals_.sides;
+      r.injected = glm::vec3(totals_.injected);
+    }
+    r.memory_bytes = volume_.bytes() + fetched_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() +
+                     indirect_.bytes() + punctual_flux_.bytes() + emitted_flux_.bytes() + radiance_.bytes() +
+                     gather_.bytes();
     return r;
   }
 
@@ -219,14 +239,15 @@ class SidesOnCpu : public FrameVolume {
       embree_ = std::make_unique<EmbreeScene>(scene_);
       sky_.scene_moved();
     } else {
-      direct_light_.emplace(scene_);
+      direct_light_.emplace(scene_, lights_by_rays(scene_, options_));
     }
   }
   const EmbreeScene* rays_for_passages() const {
-    if (options_.scheme.scheme != Scheme::ordinates) return nullptr;
-    return after_first_bounce() ? embree_.get() : &direct_light_->embree();
+    if (options_.scheme.scheme != Scheme::ordinates || lead_) return nullptr;
+    return after_first_bounce() ? embree_.get() : direct_light_->embree();
   }
   SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
+    if (lead_) return direct_light_->flux(voxels, *volume_.ranks());
     if (!after_first_bounce()) return direct_light_->flux(voxels);
     const VirtualLightsForSides& lights =
         lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->sample);
@@ -239,6 +260,22 @@ class SidesOnCpu : public FrameVolume {
               flux);
     return flux;
   }
+  const VoxelGrid& sides() const { return lead_ ? fetched_.voxels : volume_.voxels(); }
+  const SideIrradiance& irradiance() const { return lead_ ? fetched_.irradiance : volume_.irradiance(); }
+  /// Waits for the G-buffer.
+  void fetch_seen(const GBuffer& gbuffer, gl::PassTimer& timer) {
+    const auto scope = timer.scope("screen/bounces/volume/fetch_sides");
+    totals_ = VolumeLead::totals(volume_);
+    const std::vector<float> positions = gbuffer.position().download(4);
+    std::vector<glm::vec4> points(positions.size() / 4);
+    std::memcpy(points.data(), positions.data(), points.size() * sizeof(glm::vec4));
+    fetched_ = lead_->fetch(volume_, blocks_seen(volume_.grid(), points));
+  }
+  void upload_sides() {
+    upload(sides(), voxels_);
+    upload_values(irradiance().direct, direct_);
+    upload_values(irradiance().indirect, indirect_);
+  }
   static void upload_values(const std::vector<glm::vec4>& values, gl::Buffer& buffer) {
     const size_t bytes = values.size() * sizeof(glm::vec4);
     if (buffer.bytes() < bytes || buffer.id() == 0) buffer = gl::Buffer(with_headroom(bytes));
@@ -247,7 +284,11 @@ class SidesOnCpu : public FrameVolume {
 
   const Scene& scene_;
   VolumeOptions options_;
+  std::optional<VolumeLead> lead_;  // none: there is one rank
   VolumeCpu volume_;
+  glm::vec3 shift_{0.0f};
+  VolumeLead::Totals totals_;
+  VolumeLead::Sides fetched_;
   std::optional<DirectLightCpu> direct_light_;  // of Source::lights
   std::unique_ptr<EmbreeScene> embree_;         // of Source::first_bounce
   SideSkyCpu sky_;
@@ -270,7 +311,7 @@ class PulseOnCpu : public FrameVolume {
       : scene_(scene),
         options_(options),
         volume_(scene, options),
-        direct_light_(scene),
+        direct_light_(scene, lights_by_rays(scene, options)),
         radiance_(volume_.grid(), options.scheme.sh_order == 2 ? 9 : 4),
         normal_occupancy_(gl::Texture::make_3d(GL_RGBA32F, volume_.grid().cells)),
         gather_(size, options.scheme.sh_order) {}
@@ -323,7 +364,13 @@ size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm
   const ExpectedSides expected = expected_sides(scene, grid);
   const bool fits = fit_on_gpu(grid, expected.sides);
   const size_t uploaded = sizeof(Grid) + 8 * cell_count(grid) + sizeof(shared::Side) * expected.sides;
-  const size_t bytes = bytes_expected_cpu(scene, grid, options, expected) + (fits ? uploaded : 0);
+  size_t bytes = fits ? uploaded : 0;
+  if (options.ranks != nullptr) {
+    const Decomposition parts(leaf_blocks(grid), options.ranks->count());
+    bytes += bytes_expected_cpu(scene, grid, options, RanksOfVolume{*options.ranks, parts});
+  } else {
+    bytes += bytes_expected_cpu(scene, grid, options, expected);
+  }
   if (carries_sides(options.scheme.scheme) && !fits) return bytes + VolumeGather::bytes_for(size);
   if (carries_sides(options.scheme.scheme))
     return bytes + 2 * with_headroom(sizeof(glm::vec4) * expected.sides) + VolumeGather::bytes_for(size);
@@ -334,6 +381,16 @@ size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm
 
 std::unique_ptr<FrameVolume> make_volume_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
   refuse_on_cpu(options);
+  const bool first_bounce = options.source == VolumeOptions::Source::first_bounce;
+  if (options.ranks != nullptr) {
+    if (first_bounce)
+      throw Error(ExitCode::usage,
+                  "a first bounce on the screen is for one rank; of several, pictures are of the volume alone");
+    refuse_of_ranks(options);
+    return std::make_unique<SidesOnCpu>(scene, options, size);
+  }
+  if (first_bounce && options.first_light == VolumeOptions::FirstLight::faces)
+    throw Error(ExitCode::usage, "--first-light faces is for --gi volume: a first bounce on the screen has its own");
   if (options.memory_limit) refuse_above_limit(options, volume_bytes_on_cpu(scene, options, size), "CPU");
   if (carries_sides(options.scheme.scheme)) return std::make_unique<SidesOnCpu>(scene, options, size);
   return std::make_unique<PulseOnCpu>(scene, options, size);
