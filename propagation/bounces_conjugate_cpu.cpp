@@ -65,7 +65,7 @@ bool BouncesCpu::begin_descent(const Run& run, glm::vec4 share, Descent& c, Boun
     report.converged = true;
     return false;
   }
-  carry(sent_, run.rules, report);
+  carry_sources(sent_, run.rules, report);
   p.swap(received_);
   for_each_side(count, [&](size_t i) {
     c.q[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(p[i]), 0.0f) - c.q[i];

@@ -110,6 +110,12 @@ void BouncesCpu::carry(const Powers& sent, const BounceRules& rules, BounceRepor
   }
 }
 
+void BouncesCpu::carry_sources(const Powers& sent, const BounceRules& rules, BounceReport& report) {
+  transport_->carry_sources(true);
+  carry(sent, rules, report);
+  transport_->carry_sources(false);
+}
+
 void BouncesCpu::send_emission(const Run& run) {
   for_each_side(sent_.size(),
                 [&](size_t i) { sent_[i] = glm::vec4(sent_power(run.voxels.sides()[i], run.flux.emitted[i]), 0.0f); });
@@ -121,7 +127,7 @@ void BouncesCpu::arrival_of_emission(const Run& run, BounceReport& report) {
   send_emission(run);
   report.sent += glm::vec3(total(sent_));
   transport_->stream_in(run.sky);
-  carry(sent_, by_itself, report);
+  carry_sources(sent_, by_itself, report);
   transport_->stream_in(nullptr);
   received_direct_.swap(received_);
 }
@@ -148,7 +154,7 @@ void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
   const bool together = transport_->iterative() && rules.together();
   if (rules.iterations && !transport_->iterative()) limit = std::min(limit, *rules.iterations);
   sent_ = resumed_ ? std::move(resumed_->residual) : source_;
-  while (report.orders < limit) {
+  for (bool first = !resumed_; report.orders < limit; first = false) {
     const glm::vec3 sent(total(sent_));
     const bool ended = !rules.bounces && report.orders > 0 && rules.orders_ended(sent, report.sent);
     if (sent == glm::vec3(0.0f) || ended) {
@@ -156,7 +162,11 @@ void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
       report.converged = true;
       return;
     }
-    carry(sent_, rules, report);
+    if (first) {
+      carry_sources(sent_, rules, report);
+    } else {
+      carry(sent_, rules, report);
+    }
     report.sent += sent;
     for_each_side(sent_.size(), [&](size_t i) {
       received_indirect_[i] += received_[i];

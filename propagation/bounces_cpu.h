@@ -55,6 +55,8 @@ class BouncesCpu {
   };
   void make_room(const Run& run);
   void carry(const Powers& sent, const BounceRules& rules, BounceReport& report);
+  /// An order with what sources send in it (TransportCpu::carry_sources).
+  void carry_sources(const Powers& sent, const BounceRules& rules, BounceReport& report);
   void send_emission(const Run& run);
   void arrival_of_emission(const Run& run, BounceReport& report);
   glm::vec4 set_source(const Run& run);

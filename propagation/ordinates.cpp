@@ -133,9 +133,9 @@ OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options) 
 }
 std::optional<OrdinateChoice> choose_source_ordinates(glm::ivec3 cells, const SchemeOptions& options) {
   const bool many =
-      options.source_directions && !options.directions && choose_ordinates(cells, options).directions == 128;
+      options.many_for_sources && !options.directions && choose_ordinates(cells, options).directions == 128;
   if (!many) return std::nullopt;
-  return OrdinateChoice{*options.source_directions, options.ordinates.value_or(Ordinates::characteristic)};
+  return OrdinateChoice{512, options.ordinates.value_or(Ordinates::characteristic)};
 }
 int directions_for_grid(glm::ivec3 cells) { return choose_ordinates(cells, SchemeOptions{}).directions; }
 

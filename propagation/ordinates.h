@@ -53,7 +53,7 @@ struct OrdinateChoice {
 /// up to 16 cells; then characteristic, with 48 directions up to 32 cells and 128 above. Where only one of the two is
 /// requested, the other follows: characteristic with 48 directions or more, step with fewer.
 OrdinateChoice choose_ordinates(glm::ivec3 cells, const SchemeOptions& options);
-/// What carries the order of what sources send; none: the same as all orders (SchemeOptions::source_directions).
+/// What carries the order of what sources send; none: the same as all orders (SchemeOptions::many_for_sources).
 std::optional<OrdinateChoice> choose_source_ordinates(glm::ivec3 cells, const SchemeOptions& options);
 
 /// The number of directions that suits a grid, where none is requested.

@@ -19,9 +19,9 @@ struct SchemeOptions {
   Scheme scheme = Scheme::ordinates;
   std::optional<int> directions;       // of ordinates: 8, 24, 48, 80, 128, 512; none: what goes with the grid
   std::optional<Ordinates> ordinates;  // none: what goes with the grid
-  /// of ordinates, where `directions` says nothing and the grid has 128: as many carry what sources send, which is
-  /// concentrated, by the characteristic rule; what surfaces then pass on is smooth. None: the same as all.
-  std::optional<int> source_directions;
+  /// of ordinates, where `directions` says nothing and the grid has 128: 512 carry what sources send, which is
+  /// concentrated, by the characteristic rule; what surfaces then pass on is smooth, and 128 do.
+  bool many_for_sources = false;
   int sh_order = 1;              // of the three SH schemes: 1 or 2
   bool constant_albedo = false;  // gaitatzes2010: 0.5 after the first bounce, as the paper has it
   /// gaitatzes2010, what the pulse starts from. flux: what sides send, each into the cell that sees it, power kept as

@@ -10,7 +10,8 @@ std::unique_ptr<TransportCpu> make_transport(const VoxelGrid& voxels, const Sche
   switch (options.scheme) {
     case Scheme::ordinates:
       return std::make_unique<OrdinatesTransportCpu>(voxels, choose_ordinates(voxels.grid().cells, options), nullptr,
-                                                     ranks);
+                                                     ranks, SweepPipeline::AtOnce{},
+                                                     choose_source_ordinates(voxels.grid().cells, options));
     case Scheme::conservative:
       return std::make_unique<ConservativeTransportCpu>(voxels, options.sh_order,
                                                         options.coarse_start.value_or(true) ? half_voxels : nullptr,

@@ -24,7 +24,7 @@ class TransportCpu {
   /// directions of its own knows no sky.
   virtual void stream_in(const Sky* /*sky*/) {}
   /// Whether the orders begun from now on are of what sources send, which is concentrated and may be worth more
-  /// directions (SchemeOptions::source_directions).
+  /// directions (SchemeOptions::many_for_sources).
   virtual void carry_sources(bool /*on*/) {}
   /// From the next begin() on, light goes through these faces, none of which has a side, as through gaps of another
   /// width than cells show. A scheme without a sweep takes no notice.

@@ -225,22 +225,23 @@ RadianceVolume OrdinatesTransportCpu::RadianceLeaves::volume(const Grid& grid) &
   return volume;
 }
 
-std::vector<sweep::Constants> OrdinatesTransportCpu::make_batches(OrdinateChoice choice, float cell_size_m) {
+OrdinatesTransportCpu::Angles OrdinatesTransportCpu::make_angles(OrdinateChoice choice, float cell_size_m) {
   const OrdinateSet set = ordinate_set(choice.directions);
-  std::vector<sweep::Constants> batches;
+  Angles angles{choice, {}, {}, 0};
   for (size_t b = 0; b * kBatch < set.directions.size(); ++b)
-    batches.push_back(make_constants(set, b, choice.rule, cell_size_m));
-  return batches;
+    angles.batches.push_back(make_constants(set, b, choice.rule, cell_size_m));
+  return angles;
 }
 
 OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
                                              const sweep::Kernels* kernels, const RanksOfVolume* ranks,
-                                             SweepPipeline::AtOnce at_once)
+                                             SweepPipeline::AtOnce at_once, std::optional<OrdinateChoice> sources)
     : voxels_(voxels),
-      choice_(choice),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
-      batches_(make_batches(choice, voxels.grid().cell_size_m)),
+      all_(make_angles(choice, voxels.grid().cell_size_m)),
       pipeline_(ranks, voxels.part(), face_floats(), at_once) {
+  if (sources) sources_ = make_angles(*sources, voxels.grid().cell_size_m);
+  assert(!sources_ || sources_->batches[0].octets == all_.batches[0].octets);
   pack_sides({});
 }
 
@@ -289,25 +290,29 @@ void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
 
 void OrdinatesTransportCpu::stream_in(const Sky* sky) {
   streams_in_ = sky != nullptr;
-  if (sky != nullptr && sky->id() != inflow_of_) make_inflow(*sky);
+  if (sky == nullptr) return;
+  make_inflow(*sky, all_);
+  if (sources_) make_inflow(*sky, *sources_);
 }
 
 /// The step kernel is handed the power of a cell, of which the upwind faces' shares are what comes in: the same cell
 /// for all three. The characteristic one is handed the power through the face.
-void OrdinatesTransportCpu::make_inflow(const Sky& sky) {
-  inflow_of_ = sky.id();
-  const OrdinateSet set = ordinate_set(choice_.directions);
+void OrdinatesTransportCpu::make_inflow(const Sky& sky, Angles& angles) const {
+  if (sky.id() == angles.inflow_of) return;
+  angles.inflow_of = sky.id();
+  const OrdinateSet set = ordinate_set(angles.choice.directions);
   const size_t n = set.directions.size();
   const std::vector<glm::vec3> flux = rim_inflow(sky, set);
-  inflow_.resize(batches_.size());
-  for (size_t batch = 0; batch < batches_.size(); ++batch) {
+  angles.inflow.resize(angles.batches.size());
+  for (size_t batch = 0; batch < angles.batches.size(); ++batch) {
     for (size_t octant = 0; octant < 8; ++octant) {
-      std::array<Floats, 3>& by_axis = inflow_[batch][octant];
+      std::array<Floats, 3>& by_axis = angles.inflow[batch][octant];
       for (Floats& lanes : by_axis) lanes.assign(sweep::kMaxLanes, 0.0f);
       for (const Lane& l : lanes_of(int(directions_in(set, batch)))) {
         const size_t d = batch * kBatch + l.direction;
         glm::vec3 handed = inflow_per_flux(set, d, voxels_.grid().cell_size_m) * flux[octant * n + d][l.band];
-        if (choice_.rule == Ordinates::step) handed /= cell_transfer(choice_.rule, set.directions[d]).share[0];
+        if (angles.choice.rule == Ordinates::step)
+          handed /= cell_transfer(angles.choice.rule, set.directions[d]).share[0];
         for (int axis = 0; axis < 3; ++axis) by_axis[size_t(axis)][size_t(l.lane)] = handed[axis];
       }
     }
@@ -319,14 +324,14 @@ void OrdinatesTransportCpu::fill_rim(SweepPipeline::Task task, int axis) {
   const SweepPipeline::Plane plane = pipeline_.plane(task, axis);
   std::fill(plane.lit, plane.lit + plane.faces, static_cast<unsigned char>(streams_in_ ? 1 : 0));
   for (size_t face = 0; face < plane.faces && streams_in_; ++face)
-    kernels_.fill_face(constants().octets, inflow_[batch_][size_t(task.octant)][size_t(axis)].data(),
+    kernels_.fill_face(constants().octets, angles().inflow[batch_][size_t(task.octant)][size_t(axis)].data(),
                        plane.values + face * face_floats());
 }
 
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
   assert(received.size() == voxels_.side_count());
-  for (batch_ = 0; batch_ < batches_.size(); ++batch_) {
+  for (batch_ = 0; batch_ < angles().batches.size(); ++batch_) {
     sweep(false, nullptr);
     add_arrived(received);
   }
@@ -352,7 +357,7 @@ void OrdinatesTransportCpu::add_arrived(std::span<glm::vec4> received) {
 RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
   begin(sent);
   RadianceLeaves leaves(voxels_.part());
-  for (batch_ = 0; batch_ < batches_.size(); ++batch_) sweep(true, &leaves);  // octants add to the same cells
+  for (batch_ = 0; batch_ < angles().batches.size(); ++batch_) sweep(true, &leaves);  // octants add to the same cells
   batch_ = 0;
   std::fill(arrived_.begin(), arrived_.end(), glm::vec4(0.0f));
   return std::move(leaves).volume(voxels_.grid());
@@ -407,10 +412,11 @@ void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, Ra
   unsigned char& x_lit = several ? pipeline_.carried_lit(octant, row) : of_row_lit;
   if (task.chunk == 0) {
     x_lit = streams_in_ ? 1 : 0;
-    if (streams_in_) kernels_.fill_face(constants().octets, inflow_[batch_][size_t(octant)][0].data(), x_carried);
+    if (streams_in_)
+      kernels_.fill_face(constants().octets, angles().inflow[batch_][size_t(octant)][0].data(), x_carried);
   }
   const sweep::Kernel kernel =
-      kernels_.kernel(choice_.rule == Ordinates::characteristic, constants().octets, leaves != nullptr);
+      kernels_.kernel(angles().choice.rule == Ordinates::characteristic, constants().octets, leaves != nullptr);
   for (int x = first_x; x < std::min(first_x + width, n.x); ++x) {
     const glm::ivec3 along(x, y, z);
     const glm::ivec3 block = part.first + positive * along + (1 - positive) * (n - 1 - along);

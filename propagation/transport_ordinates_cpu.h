@@ -2,6 +2,7 @@
 #include <tbb/cache_aligned_allocator.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "propagation/ordinates.h"
@@ -30,12 +31,15 @@ class OrdinatesTransportCpu : public TransportCpu {
   /// @param ranks    that the voxels are parts of, which then do all together; null: there is one. No result depends
   ///                 on their number (sweep/sweep_pipeline.h).
   /// @param at_once  for tests.
+  /// @param sources  of the orders that carry_sources() announces; none: `choice`. Of as many directions in a batch.
   /// @throws Error(usage) as ordinate_set.
   OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
-                        const RanksOfVolume* ranks = nullptr, SweepPipeline::AtOnce at_once = {});
+                        const RanksOfVolume* ranks = nullptr, SweepPipeline::AtOnce at_once = {},
+                        std::optional<OrdinateChoice> sources = {});
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
+  void carry_sources(bool on) override { of_sources_ = on; }
   void set_passages(std::span<const PassageFace> faces) override;
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return false; }
@@ -50,36 +54,43 @@ class OrdinatesTransportCpu : public TransportCpu {
   /// Of these, about what a column of blocks along x without any sides takes on lean ranks.
   static size_t bytes_of_column(OrdinateChoice choice);
   const SweepPipeline& pipeline() const { return pipeline_; }
-  OrdinateChoice choice() const { return choice_; }
+  OrdinateChoice choice() const { return all_.choice; }
 
  private:
   using Floats = std::vector<float, tbb::cache_aligned_allocator<float>>;
+  /// What blocks at the rim find where light comes in, by octant and axis: one row of lanes.
+  using Inflow = std::array<std::array<Floats, 3>, 8>;
+  /// Directions and their rule, in batches of up to 16 directions of an octant each, the most that kernels take: these
+  /// go in turn.
+  struct Angles {
+    OrdinateChoice choice;
+    std::vector<sweep::Constants> batches;
+    std::vector<Inflow> inflow;   // by batch
+    std::uint64_t inflow_of = 0;  // Sky::id() that inflow is made from
+  };
   struct RadianceLeaves;
 
   void pack_sides(std::span<const PassageFace> passages);
-  void make_inflow(const Sky& sky);
+  void make_inflow(const Sky& sky, Angles& angles) const;
   void fill_rim(SweepPipeline::Task task, int axis);
   void sweep(bool in_order, RadianceLeaves* leaves);
   void sweep_chunk(SweepPipeline::Task task, bool threaded, RadianceLeaves* leaves);
   void sweep_row(SweepPipeline::Task task, int y, int z, RadianceLeaves* leaves);
   static size_t bytes_of_sides(const BlockBox& part, const ExpectedSides& expected);
-  static std::vector<sweep::Constants> make_batches(OrdinateChoice choice, float cell_size_m);
+  static Angles make_angles(OrdinateChoice choice, float cell_size_m);
+  const Angles& angles() const { return of_sources_ && sources_ ? *sources_ : all_; }
   void add_arrived(std::span<glm::vec4> received);
-  const sweep::Constants& constants() const { return batches_[batch_]; }
-  size_t face_floats() const { return face_floats(batches_[0].octets); }
+  const sweep::Constants& constants() const { return angles().batches[batch_]; }
+  size_t face_floats() const { return face_floats(all_.batches[0].octets); }
   static size_t face_floats(int octets) { return sweep::kBlockFace * size_t(octets) * sweep::kOctet; }
 
   const VoxelGrid& voxels_;
-  OrdinateChoice choice_;
   sweep::Kernels kernels_;
-  /// Up to 16 directions of an octant each, the most that kernels take: larger sets go in turn. `batch_` is swept.
-  std::vector<sweep::Constants> batches_;
-  size_t batch_ = 0;
+  Angles all_;
+  std::optional<Angles> sources_;
+  bool of_sources_ = false;
+  size_t batch_ = 0;  // of angles(), that is swept
   SweepPipeline pipeline_;
-  /// What blocks at the rim find where light comes in, by octant and axis, of each batch: one row of lanes.
-  using Inflow = std::array<std::array<Floats, 3>, 8>;
-  std::vector<Inflow> inflow_;
-  std::uint64_t inflow_of_ = 0;  // Sky::id() that inflow_ is made from
   bool streams_in_ = false;
   // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
   // Faces of passages are packed as sides, too, that send nothing and keep nothing: kNoSide.

@@ -214,5 +214,18 @@ TEST(ChooseOrdinates, FollowsTheGridAndWhatIsAskedFor) {
   EXPECT_EQ(choose_ordinates({16, 16, 16}, both).rule, Ordinates::step);
 }
 
+TEST(ChooseOrdinates, SourcesHaveMoreWhereAllHave128) {
+  SchemeOptions options;
+  EXPECT_FALSE(choose_source_ordinates(glm::ivec3(48), options));
+  options.many_for_sources = true;
+  const std::optional<OrdinateChoice> sources = choose_source_ordinates(glm::ivec3(48), options);
+  ASSERT_TRUE(sources);
+  EXPECT_EQ(sources->directions, 512);
+  EXPECT_EQ(sources->rule, Ordinates::characteristic);
+  EXPECT_FALSE(choose_source_ordinates(glm::ivec3(16), options));
+  options.directions = 48;
+  EXPECT_FALSE(choose_source_ordinates(glm::ivec3(48), options));
+}
+
 }  // namespace
 }  // namespace volgi

@@ -294,6 +294,18 @@ TEST_P(OrdinatesCpu, IsotropicRadiance) {
 }
 
 // A wall across the grid: nothing gets through, and what is dark is left out of the volume.
+TEST(OrdinatesTransportCpu, SourcesHaveDirectionsOfTheirOwn) {
+  const glm::ivec3 cells(11, 17, 9);
+  const VoxelGrid voxels = make_voxels(cells, 0.25f, random_faces(cells, 0.7f, 0.1f, 5));
+  const Powers sent = random_powers(voxels.side_count(), 8);
+  const OrdinateChoice all{128, kStep}, sources{512, kCharacteristic};
+  OrdinatesTransportCpu transport(voxels, all, nullptr, nullptr, {}, sources);
+  for (const bool of_sources : {true, false, true}) {
+    transport.carry_sources(of_sources);
+    EXPECT_EQ(carry(transport, sent), carry(voxels, of_sources ? sources : all, sent));
+  }
+}
+
 TEST(OrdinatesTransportCpu, DarkRoomStaysDark) {
   const glm::ivec3 cells(40, 16, 16);
   const VoxelGrid voxels = make_voxels(cells, 0.1f, [cells](int axis, glm::ivec3 c) {

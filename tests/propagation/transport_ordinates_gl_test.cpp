@@ -160,6 +160,32 @@ INSTANTIATE_TEST_SUITE_P(Sets, OrdinatesGl,
                            return (step ? "Step" : "Characteristic") + std::to_string(test.param.directions);
                          });
 
+// 512 directions go in four batches through what 128 take.
+using OrdinatesGlSources = GlTest;
+TEST_F(OrdinatesGlSources, HaveDirectionsOfTheirOwn) {
+  Grid grid = unit_grid(12);
+  grid.cells = {12, 9, 7};
+  const Voxels voxels = voxelize(context(), furnished_box(), grid);
+  const VoxelGridGl gpu = upload(voxels);
+  const OrdinateChoice all{128, Ordinates::step}, sources{512, Ordinates::characteristic};
+  OrdinatesTransportGl transport(grid, all, sources);
+  const Powers sent = random_powers(voxels.sides.size(), 52);
+  for (const bool of_sources : {true, false, true}) {
+    transport.carry_sources(of_sources);
+    const OrdinateChoice choice = of_sources ? sources : all;
+    const SweepResult expected = double_sweep(voxels, choice.directions, choice.rule, sent);
+    const Powers received = carry(transport, gpu, sent);
+    double largest = 0.0, worst = 0.0;
+    for (size_t i = 0; i < sent.size(); ++i) {
+      for (int band = 0; band < 3; ++band) {
+        largest = std::max(largest, expected.received[i][band]);
+        worst = std::max(worst, std::abs(double(received[i][band]) - expected.received[i][band]));
+      }
+    }
+    EXPECT_LT(worst, 2e-6 * largest);
+  }
+}
+
 // A dispatch and a barrier cost a GPU more than a diagonal of cells does.
 using OrdinatesGlDispatches = GlTest;
 TEST_F(OrdinatesGlDispatches, AreAtMostHalfTheCellsOfAnEdge) {

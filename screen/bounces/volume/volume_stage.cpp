@@ -49,6 +49,9 @@ constexpr Parameter PARAMETERS[] = {
     yes_no<ManyDirections>(
         {"ordinates.many", "", "ordinates: 512 directions where --directions does not say, on the CPU"},
         [](ManyDirections& o) -> auto& { return o.on; }),
+    yes_no<VolumeOptions>(
+        {"ordinates.sources", "", "ordinates: 512 directions for the order of what sources send, where all have 128"},
+        [](VolumeOptions& o) -> auto& { return o.scheme.many_for_sources; }),
     choice<SolverChoice>(
         {"solver.cg", "", "one bounce after another, or conjugate gradients over bounces",
          "conjugate_gradients where the scheme allows it"},
@@ -245,6 +248,7 @@ std::unique_ptr<Stage> make_stage(const StageContext& context) {
 
 void suit(const Needs& needs, TypeMap& settings) {
   settings.of<VolumeOptions>().grid_jitter = needs.samples > 1;
+  settings.of<VolumeOptions>().scheme.many_for_sources = needs.interpolation <= 1.0;  // all but what is in haste
   settings.of<ManyDirections>().on = needs.samples > 1;
 }
 
