@@ -118,11 +118,25 @@ void ProgramRanks::end_all([[maybe_unused]] int code) const {
 #endif
 }
 
-int ProgramRanks::say_failure() const {
-  // What fails on rank 0 as well is said there, and ends the others meanwhile.
+namespace {
+
+/// What fails on rank 0 as well is said there, and ends the others meanwhile.
+void let_the_first_speak() {
   constexpr auto kFirstSpeaks = std::chrono::milliseconds(300);
+  if (!is_first_rank()) std::this_thread::sleep_for(kFirstSpeaks * (1 + program_ranks()->rank()));
+}
+
+}  // namespace
+
+int ProgramRanks::end_all_alike(int code) const {
+  let_the_first_speak();
+  end_all(code);
+  return code;
+}
+
+int ProgramRanks::say_failure() const {
+  let_the_first_speak();
   if (is_first_rank()) return app::say_failure();
-  std::this_thread::sleep_for(kFirstSpeaks * (1 + program_ranks()->rank()));
   std::cerr << fmt::format("volgi: rank {}: ", program_ranks()->rank());
   return app::say_failure();
 }
