@@ -54,10 +54,10 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
     if (app::is_first_rank())
       std::cerr << "volgi: " << (unknown ? "no command '" + std::string(argv[1]) + "'" : e.what())
                 << " (see volgi --help)\n";
-    return int(ExitCode::usage);
+    return ranks.end_all_alike(int(ExitCode::usage));
   } catch (const CLI::ParseError& e) {
     if (app::is_first_rank()) std::cerr << "volgi: " << e.what() << " (see volgi --help)\n";
-    return int(ExitCode::usage);
+    return ranks.end_all_alike(int(ExitCode::usage));
   } catch (...) {
     const int code = ranks.say_failure();
     ranks.end_all(code);

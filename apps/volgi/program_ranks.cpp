@@ -47,6 +47,7 @@ volatile sig_atomic_t ending = 0;
 /// Where a rank has died, the launcher ends the others in this way: one of them says so, in one line. Nothing but what
 /// a handler may call.
 extern "C" void ended_by_launcher(int) {
+  usleep(50000);  // another thread may be about to learn that it has been said
   if (ending != 0) _exit(128 + SIGTERM);
   ending = 1;
   const int own = socket(AF_UNIX, SOCK_DGRAM, 0);
@@ -68,6 +69,7 @@ void speak_when_ended() {
   action.sa_handler = ended_by_launcher;
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = end_in_silence;
+  sigaddset(&action.sa_mask, SIGTERM);  // where both have come, this one is first
   sigaction(SIGUSR1, &action, nullptr);
 }
 
@@ -118,11 +120,25 @@ void ProgramRanks::end_all([[maybe_unused]] int code) const {
 #endif
 }
 
-int ProgramRanks::say_failure() const {
-  // What fails on rank 0 as well is said there, and ends the others meanwhile.
+namespace {
+
+/// What fails on rank 0 as well is said there, and ends the others meanwhile.
+void let_the_first_speak() {
   constexpr auto kFirstSpeaks = std::chrono::milliseconds(300);
+  if (!is_first_rank()) std::this_thread::sleep_for(kFirstSpeaks * (1 + program_ranks()->rank()));
+}
+
+}  // namespace
+
+int ProgramRanks::end_all_alike(int code) const {
+  let_the_first_speak();
+  end_all(code);
+  return code;
+}
+
+int ProgramRanks::say_failure() const {
+  let_the_first_speak();
   if (is_first_rank()) return app::say_failure();
-  std::this_thread::sleep_for(kFirstSpeaks * (1 + program_ranks()->rank()));
   std::cerr << fmt::format("volgi: rank {}: ", program_ranks()->rank());
   return app::say_failure();
 }

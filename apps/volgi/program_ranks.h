@@ -16,6 +16,8 @@ class ProgramRanks {
   /// Ends all ranks with the code of one that has failed, whose line is said: that of rank 0 where all have the same
   /// failure. Returns where there is one rank.
   void end_all(int code) const;
+  /// The same where all fail alike, after the first has said so.
+  int end_all_alike(int code) const;
   /// Whatever happens in the handler: says the failure, as say_failure(), so that one line comes of all ranks.
   int say_failure() const;
 };

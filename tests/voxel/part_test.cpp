@@ -83,6 +83,22 @@ TEST(Decomposition, EvenedOutByWeight) {
             heaviest(Decomposition(blocks, 4)));
 }
 
+// A block of cells of twice the edge and the fine blocks in it are one rank's.
+TEST(Decomposition, DoubledHoldsTheSame) {
+  for (const glm::ivec3 fine : {glm::ivec3(16), {9, 7, 5}, {3, 1, 2}}) {
+    for (const int ranks : {2, 3, 8}) {
+      const Decomposition coarse((fine + 1) / 2, ranks), d = coarse.doubled(fine);
+      size_t dealt = 0;
+      for (int rank = 0; rank < ranks; ++rank) {
+        const BlockBox part = d.part(rank);
+        dealt += part.count();
+        for (size_t i = 0; i < part.count(); ++i) ASSERT_EQ(coarse.owner(part.block(i) / 2), rank);
+      }
+      EXPECT_EQ(dealt, size_t(fine.x * fine.y * fine.z));
+    }
+  }
+}
+
 TEST(Decomposition, NeighboursAreMutual) {
   const Decomposition d({8, 8, 12}, 6);
   for (int rank = 0; rank < 6; ++rank) {
