@@ -56,12 +56,7 @@ void write_json(const std::filesystem::path& file, const Json& json) {
   const std::string place = not_finite(json, {});
   if (!place.empty())
     throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {} is not finite", file.string(), place));
-  write_atomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << json.dump(2, ' ', false, Json::error_handler_t::ignore) << '\n';
-    out.close();
-    if (!out) throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: no space?", file.string()));
-  });
+  write_text_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::ignore) + '\n');
 }
 
 JsonObject::JsonObject(const Json& json, std::string file, std::string place)
