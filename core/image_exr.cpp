@@ -16,6 +16,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <stdexcept>
 
 #include "core/atomic_file.h"
@@ -190,6 +191,8 @@ ChannelImage read_exr(const std::filesystem::path& path) {
     return image;
   } catch (const Error&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& e) {  // Iex: truncated or damaged
     refuse(path, fmt::format("cannot be read as OpenEXR: {}", e.what()));
   }
@@ -216,6 +219,8 @@ void write_exr(const std::filesystem::path& path, const ChannelImage& image, boo
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
       write_channels(temporary, image, half);
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& e) {
       throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {}", path.string(), e.what()));
     }
