@@ -23,7 +23,22 @@ Json listed_scenes(const fs::path& data) {
   std::ifstream file(data / "scenes.json");
   if (!file) return Json::array();
   Json list = Json::parse(file, nullptr, false);
-  if (!list.is_array()) throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": not a list of scenes");
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": " + what);
+  };
+  if (!list.is_array()) refuse("not a list of scenes");
+  const auto is_text = [](const Json& object, const char* key, bool needed) {
+    return object.contains(key) ? object[key].is_string() : !needed;
+  };
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Json& entry = list[k];
+    if (!is_text(entry, "name", true) || !is_text(entry, "file", true))
+      refuse(fmt::format("scene {} has no name or no file", k));
+    for (const Json& of : {entry, entry.value("one_bounce", Json::object())}) {
+      if (!of.is_object() || !is_text(of, "reference", false) || !is_text(of, "command", false))
+        refuse(fmt::format("scene {}: a reference and its command are texts", k));
+    }
+  }
   return list;
 }
 
