@@ -130,7 +130,8 @@ TextureImage decode_image(const Document& document, size_t index) {
       in.bufferView >= 0 ? view_bytes(document, in.bufferView, name) : Bytes{in.image.data(), in.image.size()};
   int width = 0, height = 0, channels = 0;
   if (is_webp(bytes)) return decode_webp(document, bytes, name);
-  const bool known = is_png_or_jpeg(bytes) && bytes.size <= size_t(std::numeric_limits<int>::max()) &&
+  const bool known = is_png_or_jpeg(bytes) && jpeg_tables_fit(bytes) &&
+                     bytes.size <= size_t(std::numeric_limits<int>::max()) &&
                      stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels) != 0;
   if (!known) refuse(document.path, fmt::format("{} is no PNG, JPEG or WebP that can be read", name));
   check_size(document, width, height, name);
