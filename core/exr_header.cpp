@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -14,6 +16,32 @@ namespace {
 // {name, type, size, value} and ends with an empty name. Of a file of several parts the last header is empty.
 constexpr std::uint64_t before_headers = 8;
 constexpr int parts_flag = 0x10;  // of the byte behind the version's own
+
+// Of these OpenEXR reads as much as the type has, whatever the attribute's length says, and goes on behind that.
+const std::map<std::string, std::uint64_t, std::less<>> kLengths{{"box2f", 16},
+                                                                 {"box2i", 16},
+                                                                 {"chromaticities", 32},
+                                                                 {"compression", 1},
+                                                                 {"deepImageState", 1},
+                                                                 {"double", 8},
+                                                                 {"envmap", 1},
+                                                                 {"float", 4},
+                                                                 {"int", 4},
+                                                                 {"keycode", 28},
+                                                                 {"lineOrder", 1},
+                                                                 {"m33d", 72},
+                                                                 {"m33f", 36},
+                                                                 {"m44d", 128},
+                                                                 {"m44f", 64},
+                                                                 {"rational", 8},
+                                                                 {"tiledesc", 9},
+                                                                 {"timecode", 8},
+                                                                 {"v2d", 16},
+                                                                 {"v2f", 8},
+                                                                 {"v2i", 8},
+                                                                 {"v3d", 24},
+                                                                 {"v3f", 12},
+                                                                 {"v3i", 12}};
 
 /// Reads ahead of OpenEXR.
 class HeaderWalk {
@@ -40,12 +68,24 @@ class HeaderWalk {
       const std::string type = text();
       const std::uint64_t length = number();
       if (length > left()) throw std::runtime_error("attribute " + name + " is longer than the file");
+      const auto known = kLengths.find(type);
+      if (known != kLengths.end() && known->second != length)
+        throw std::runtime_error("attribute " + name + " is not as long as its type");
+      if (type == "floatvector" && length % 4 != 0) throw std::runtime_error("attribute " + name + " ends in a number");
       const auto value = in_.tellg();
       if (type == "stringvector") check_texts(length);
       if (type == "preview") check_preview(length);
+      if (type == "chlist") check_channels(length);
       in_.seekg(value + std::streamoff(length));
     }
     return any;
+  }
+  void check_channels(std::uint64_t length) {
+    constexpr std::streamoff of_a_channel = 16;
+    const auto start = in_.tellg();
+    while (!text().empty()) in_.seekg(of_a_channel, std::ios::cur);
+    if (std::uint64_t(in_.tellg() - start) != length)
+      throw std::runtime_error("its list of channels is not as long as it says");
   }
   void check_texts(std::uint64_t length) {
     for (std::uint64_t at = 0; at < length;) {

@@ -142,10 +142,6 @@ class TextureTable {
   std::vector<int> texture_of_file_, image_of_file_;
   std::vector<int> encoded_;  // of out_.images: the file's, -1 where it is decoded
 };
-// --- jpeg_tables.cpp
-/// Whether no Huffman table of a JPEG has more codes than there are symbols.
-bool jpeg_tables_fit(Bytes jpeg);
-
 /// PNG or JPEG.
 TextureImage decode_image(const Document& document, size_t index);
 

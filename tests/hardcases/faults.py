@@ -27,7 +27,7 @@ parser.add_argument("--demo")
 parser.add_argument("--kills", type=int, default=4)
 parser.add_argument("--allocations", type=int, default=12)
 parser.add_argument("cases", nargs="*")
-asked = parser.parse_args()
+asked = parser.parse_intermixed_args()
 
 SCENE = asked.source / "data/cornell.glb"
 SMALL = ["--size", "16x16", "--grid", "8", "--vpls", "32", "--vals", "4", "--set", "val.map=32", "--set", "shadow.spot=64"]
@@ -371,6 +371,9 @@ def any_threads():
 
 CASES = [killed, full_disk, no_memory, broken_shader, lost_context, interrupted_report, read_only_home, no_tmp,
          jumping_clock, any_threads]
+unknown = set(asked.cases) - {case.__name__ for case in CASES}
+if unknown:
+    parser.error(f"no case {', '.join(sorted(unknown))}")
 here = os.getcwd()
 for name in ("volgi", "demo", "preload", "source"):
     value = getattr(asked, name)
