@@ -11,12 +11,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/one_line.h"
 
 namespace volgi::demo {
 namespace {
 
 [[noreturn]] void bad(const std::string& file, const std::string& what) {
-  throw Error(ExitCode::bad_input, fmt::format("{}: {}", file, what));
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", file, one_line(what)));
 }
 
 std::string joined(const std::string& place, std::string_view key) {
