@@ -26,6 +26,13 @@ if(VOLGI_SANITIZE)
   target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=address,undefined;-fno-sanitize-recover=all;-fno-omit-frame-pointer>)
   target_link_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=address,undefined>)
 endif()
+if(VOLGI_FUZZ)
+  # The libraries of others are built without: no types of theirs for `vptr`, no signatures for `function`.
+  set(sanitizers -fsanitize=address,undefined -fno-sanitize=vptr,function)
+  target_compile_options(volgi_options INTERFACE -fsanitize=fuzzer-no-link ${sanitizers} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer)
+  target_link_options(volgi_options INTERFACE ${sanitizers})
+endif()
 target_compile_definitions(volgi_options INTERFACE GLM_FORCE_DEPTH_ZERO_TO_ONE GLM_ENABLE_EXPERIMENTAL)
 
 # Precompiled headers: what nearly every file reads, once for each kind of target, since a kind's flags have to be the same.

@@ -72,4 +72,13 @@ void write_atomically(const fs::path& target, const std::function<void(const fs:
   temporary.path.clear();
 }
 
+void write_text_atomically(const fs::path& target, std::string_view text) {
+  write_atomically(target, [&](const fs::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) fail(target, "the disk may be full");
+  });
+}
+
 }  // namespace volgi

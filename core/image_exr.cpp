@@ -16,11 +16,14 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <stdexcept>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/exr_header_internal.h"
 #include "core/image.h"
+#include "core/one_line.h"
 
 namespace volgi {
 namespace {
@@ -30,7 +33,7 @@ constexpr std::int64_t largest_edge = 65536;
 constexpr std::int64_t max_values = std::int64_t(1) << 31;  // pixels times channels: 8 GiB
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
-  throw Error(ExitCode::bad_input, fmt::format("{}: {}", path.string(), why));
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", path.string(), one_line(why)));
 }
 
 size_t channel_count(const Imf::ChannelList& channels) {
@@ -39,7 +42,10 @@ size_t channel_count(const Imf::ChannelList& channels) {
   return count;
 }
 
-/// What the file claims is checked before anything is allocated for it.
+/// What the file claims is checked before anything is allocated for it: a byte stands for no more than so many of
+/// pixels, with which DWA packs a black picture.
+constexpr std::int64_t most_unpacked = 16384;
+
 void check_header(const std::filesystem::path& path, const Imf::Header& header) {
   if (header.hasType() && Imf::isDeepData(header.type())) refuse(path, "deep EXR files are not supported");
   const auto& window = header.dataWindow();
@@ -50,6 +56,16 @@ void check_header(const std::filesystem::path& path, const Imf::Header& header) 
   if (width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
       width * height > max_values / channels) {
     refuse(path, fmt::format("an EXR of {}x{} pixels and {} channels is not supported", width, height, channels));
+  }
+  const auto bytes = std::int64_t(std::filesystem::file_size(path));
+  if (width * height * channels * std::int64_t(sizeof(float)) > most_unpacked * bytes)
+    refuse(path,
+           fmt::format("{}x{} pixels of {} channels do not fit into its {} bytes", width, height, channels, bytes));
+  if (header.hasTileDescription()) {
+    const Imf::TileDescription& tile = header.tileDescription();
+    if (tile.xSize < 1 || tile.ySize < 1 || tile.xSize > largest_edge || tile.ySize > largest_edge ||
+        std::int64_t(tile.xSize) * tile.ySize * channels * std::int64_t(sizeof(float)) > most_unpacked * bytes)
+      refuse(path, fmt::format("tiles of {}x{} pixels do not fit into its {} bytes", tile.xSize, tile.ySize, bytes));
   }
   for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1) {
@@ -170,6 +186,7 @@ ChannelImage read_exr(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, error)) refuse(path, "there is no such file");
   try {
     if (!Imf::isOpenExrFile(path.c_str())) refuse(path, "not an OpenEXR file");
+    check_exr_header(path);
     Imf::MultiPartInputFile file(path.c_str());
     constexpr int most_parts = 1024;
     if (file.parts() < 1 || file.parts() > most_parts) refuse(path, fmt::format("an EXR of {} parts", file.parts()));
@@ -189,6 +206,8 @@ ChannelImage read_exr(const std::filesystem::path& path) {
     }
     return image;
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {  // Iex: truncated or damaged
     refuse(path, fmt::format("cannot be read as OpenEXR: {}", e.what()));
@@ -216,6 +235,8 @@ void write_exr(const std::filesystem::path& path, const ChannelImage& image, boo
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
       write_channels(temporary, image, half);
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& e) {
       throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {}", path.string(), e.what()));
     }

@@ -1,12 +1,16 @@
 #include <stb/stb_image.h>
 #include <stb/stb_image_write.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <limits>
 #include <memory>
 
 #include "core/atomic_file.h"
+#include "core/encoded_picture_internal.h"
 #include "core/error.h"
 #include "core/image.h"
 
@@ -56,18 +60,22 @@ void write_png_display(const std::filesystem::path& path, const Image& display) 
 Image read_png(const std::filesystem::path& path) {
   constexpr int largest_edge = 32768;
   int width = 0, height = 0, channels = 0;
-  std::array<unsigned char, 8> head{};
-  std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(head.data()), head.size());
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
   constexpr std::array<unsigned char, 8> png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  const bool known = head == png && stbi_info(path.c_str(), &width, &height, &channels) != 0;
-  if (!known || width < 1 || height < 1 || width > largest_edge || height > largest_edge)
+  const bool is_png = bytes.size() <= size_t(std::numeric_limits<int>::max()) && bytes.size() >= png.size() &&
+                      std::equal(png.begin(), png.end(), bytes.begin()) && png_chunks_fit(bytes);
+  const auto size = int(bytes.size());
+  const bool known = is_png && stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) != 0;
+  if (!known || width < 1 || height < 1 || width > largest_edge || height > largest_edge ||
+      !pixels_fit(std::int64_t(width) * height, bytes.size()))
     throw Error(ExitCode::bad_input, path.string() + ": no PNG that can be read");
-  const std::unique_ptr<stbi_uc, void (*)(void*)> bytes(stbi_load(path.c_str(), &width, &height, &channels, 3),
-                                                        stbi_image_free);
-  if (!bytes) throw Error(ExitCode::bad_input, path.string() + ": cannot be decoded");
+  const std::unique_ptr<stbi_uc, void (*)(void*)> texels(
+      stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 3), stbi_image_free);
+  if (!texels) throw Error(ExitCode::bad_input, path.string() + ": cannot be decoded");
   Image image(width, height);
   for (size_t i = 0; i < image.pixels.size(); ++i) {
-    for (size_t c = 0; c < 3; ++c) image.pixels[i][int(c)] = srgb_decode(float(bytes.get()[3 * i + c]) / 255.0f);
+    for (size_t c = 0; c < 3; ++c) image.pixels[i][int(c)] = srgb_decode(float(texels.get()[3 * i + c]) / 255.0f);
   }
   return image;
 }

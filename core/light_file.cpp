@@ -121,7 +121,7 @@ void write_light_file(const std::filesystem::path& path, const LightFile& light,
   for (const Light& l : light.lights) root["lights"].push_back(to_json(l, world_origin));
   for (const auto& [material, radiance] : light.emissive_radiance)
     root["emission"].push_back({{"material", material}, {"radiance", to_json(radiance)}});
-  write_atomically(path, [&](const std::filesystem::path& p) { std::ofstream(p) << root.dump(1) << '\n'; });
+  write_text_atomically(path, root.dump(1) + '\n');
 }
 
 LightFile read_light_file(const std::filesystem::path& path, const glm::dvec3& world_origin) {

@@ -262,16 +262,10 @@ void write_virtual_lights(const std::filesystem::path& file, const VirtualLightL
     if (!wrong.empty())
       throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: light {}: {}", file.string(), i, wrong));
   }
-  write_atomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary);
-    out << fmt::format("{{\"format\": \"{}\",\n \"world_origin\": {},\n \"lights\": [", kFormat,
-                       numbers(list.world_origin).dump());
-    for (size_t i = 0; i < list.lights.size(); ++i)
-      out << (i == 0 ? "\n  " : ",\n  ") << to_json(list.lights[i]).dump();
-    out << "]}\n";
-    out.close();
-    if (!out) throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: no space?", file.string()));
-  });
+  std::string text = fmt::format("{{\"format\": \"{}\",\n \"world_origin\": {},\n \"lights\": [", kFormat,
+                                 numbers(list.world_origin).dump());
+  for (size_t i = 0; i < list.lights.size(); ++i) text += (i == 0 ? "\n  " : ",\n  ") + to_json(list.lights[i]).dump();
+  write_text_atomically(file, text + "]}\n");
 }
 
 VirtualLightList read_virtual_lights(const std::filesystem::path& file) {

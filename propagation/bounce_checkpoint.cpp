@@ -149,9 +149,8 @@ void BounceCheckpoint::keep(const VoxelGrid& voxels, const BounceState& state,
   });
   if (ranks_ != nullptr) ranks_->gather({});  // all are written
   if (rank > 0) return;
-  write_atomically(folder_ / "current", [&](const fs::path& temporary) {
-    std::ofstream(temporary) << state.pass << ' ' << (ranks_ != nullptr ? ranks_->count() : 1) << '\n';
-  });
+  write_text_atomically(folder_ / "current",
+                        fmt::format("{} {}\n", state.pass, ranks_ != nullptr ? ranks_->count() : 1));
   remove_older(state.pass);
 }
 

@@ -5,6 +5,8 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 
 #include <exception>
+#include <fstream>
+#include <new>
 #include <vector>
 
 #include "core/atomic_file.h"
@@ -19,7 +21,13 @@ void write_nvdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& g
     handles.push_back(nanovdb::openToNanoVDB(openvdb::ConstPtrCast<openvdb::GridBase>(grid)));
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
-      nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(temporary.string(), handles);
+      std::ofstream stream;
+      stream.exceptions(std::ios::badbit | std::ios::failbit);  // NanoVDB looks at no error but its own
+      stream.open(temporary, std::ios::binary);
+      nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(stream, handles);
+      stream.close();
+    } catch (const std::bad_alloc&) {
+      throw;
     } catch (const std::exception& e) {
       throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {}", path.string(), e.what()));
     }

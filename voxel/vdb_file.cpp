@@ -14,6 +14,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/one_line.h"
 
 namespace volgi {
 namespace {
@@ -179,11 +180,6 @@ class Reader : public openvdb::io::Archive {
   // The stream keeps the address of this pointer.
   openvdb::SharedPtr<openvdb::io::StreamMetadata> state_ = std::make_shared<openvdb::io::StreamMetadata>();
 };
-
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
 
 [[noreturn]] void fail(ExitCode code, const fs::path& path, const std::string& why) {
   throw Error(code, fmt::format("{}: {}", path.string(), one_line(why)));

@@ -11,12 +11,13 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/one_line.h"
 
 namespace volgi::demo {
 namespace {
 
 [[noreturn]] void bad(const std::string& file, const std::string& what) {
-  throw Error(ExitCode::bad_input, fmt::format("{}: {}", file, what));
+  throw Error(ExitCode::bad_input, fmt::format("{}: {}", file, one_line(what)));
 }
 
 std::string joined(const std::string& place, std::string_view key) {
@@ -56,12 +57,7 @@ void write_json(const std::filesystem::path& file, const Json& json) {
   const std::string place = not_finite(json, {});
   if (!place.empty())
     throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: {} is not finite", file.string(), place));
-  write_atomically(file, [&](const std::filesystem::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << json.dump(2, ' ', false, Json::error_handler_t::ignore) << '\n';
-    out.close();
-    if (!out) throw Error(ExitCode::cannot_write, fmt::format("cannot write {}: no space?", file.string()));
-  });
+  write_text_atomically(file, json.dump(2, ' ', false, Json::error_handler_t::ignore) + '\n');
 }
 
 JsonObject::JsonObject(const Json& json, std::string file, std::string place)

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -188,8 +187,7 @@ void Headless::benchmark() {
       {"frames", frames},
       {"median_ms", viewer_.times.median_ms()},
       {"arguments", frame_arguments(viewer_.session.settings().frame, viewer_.session.settings().grid_fits_scene)}};
-  write_atomically(folder / "benchmark.json",
-                   [&](const std::filesystem::path& p) { std::ofstream(p) << summary.dump(1) << '\n'; });
+  write_text_atomically(folder / "benchmark.json", summary.dump(1) + '\n');
   fmt::print("{}: {} frames, median {:.1f} ms; wrote {}\n", context_.device_name(), frames, viewer_.times.median_ms(),
              folder.string());
 }

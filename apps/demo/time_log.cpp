@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/atomic_file.h"
 
@@ -23,7 +22,7 @@ void TimeLog::write_csv(const std::filesystem::path& path) const {
     for (const auto& p : frames_[k].passes)
       text += fmt::format("{},{},{:.3f},{:.3f}\n", first_ + k, p.name, p.gpu_ms, p.cpu_ms);
   }
-  write_atomically(path, [&](const std::filesystem::path& file) { std::ofstream(file) << text; });
+  write_text_atomically(path, text);
 }
 
 double TimeLog::median_ms() const {

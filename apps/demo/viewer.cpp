@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 
 #include "apps/demo/camera_control.h"
 #include "apps/demo/render_command.h"
@@ -141,7 +140,7 @@ void Viewer::write_screenshot(const std::filesystem::path& name) {
     write_light_file(light_file, session.document().light_file(), session.document().scene().world_origin);
   }
   const std::string command = render_command(with(".png"), light_file);
-  write_atomically(with(".txt"), [&](const std::filesystem::path& p) { std::ofstream(p) << command << '\n'; });
+  write_text_atomically(with(".txt"), command + '\n');
   session.say("wrote " + with(".png").string() + ", .exr and .txt");
 }
 

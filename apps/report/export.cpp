@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "apps/report/html.h"
 #include "core/atomic_file.h"
@@ -12,10 +11,6 @@ namespace volgi::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_atomically(path, [&](const std::filesystem::path& p) { std::ofstream(p, std::ios::binary) << text; });
-}
 
 std::string quoted(const std::string& text) {
   std::string out(1, '"');
@@ -112,7 +107,7 @@ void write_csv(const Report& report, const std::filesystem::path& path) {
     cells.insert(cells.end(), {quoted(p.value("error", std::string())), p["date"], quoted(p["command"])});
     text += fmt::format("{}\n", fmt::join(cells, ","));
   }
-  write_text(path, text);
+  write_text_atomically(path, text);
 }
 
 void write_json(const Report& report, const std::filesystem::path& path) {
@@ -128,7 +123,7 @@ void write_json(const Report& report, const std::filesystem::path& path) {
     for (const Sentence& s : sentences(v)) verdict["says"].push_back(s.text);
     out["verdicts"].push_back(std::move(verdict));
   }
-  write_text(path, out.dump(1) + "\n");
+  write_text_atomically(path, out.dump(1) + "\n");
 }
 
 std::vector<Sentence> sentences(const Verdict& v) {

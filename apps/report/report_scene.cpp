@@ -10,6 +10,7 @@
 #include "apps/report/machine.h"
 #include "core/error.h"
 #include "core/log.h"
+#include "core/one_line.h"
 #include "reference/path_tracer.h"
 
 namespace volgi::app {
@@ -18,12 +19,33 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+/// A name that is too long is none.
+bool is_file(const fs::path& path) {
+  std::error_code none;
+  return fs::is_regular_file(path, none);
+}
+
 // Empty where there is no list: a scene is then a file.
 Json listed_scenes(const fs::path& data) {
   std::ifstream file(data / "scenes.json");
   if (!file) return Json::array();
   Json list = Json::parse(file, nullptr, false);
-  if (!list.is_array()) throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": not a list of scenes");
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ExitCode::bad_input, (data / "scenes.json").string() + ": " + what);
+  };
+  if (!list.is_array()) refuse("not a list of scenes");
+  const auto is_text = [](const Json& object, const char* key, bool needed) {
+    return object.contains(key) ? object[key].is_string() : !needed;
+  };
+  for (size_t k = 0; k < list.size(); ++k) {
+    const Json& entry = list[k];
+    if (!is_text(entry, "name", true) || !is_text(entry, "file", true))
+      refuse(fmt::format("scene {} has no name or no file", k));
+    for (const Json& of : {entry, entry.value("one_bounce", Json::object())}) {
+      if (!of.is_object() || !is_text(of, "reference", false) || !is_text(of, "command", false))
+        refuse(fmt::format("scene {}: a reference and its command are texts", k));
+    }
+  }
   return list;
 }
 
@@ -34,13 +56,13 @@ std::optional<fs::path> file_of(const Json& entry, const fs::path& data) {
   const fs::path beside_program = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "data";
   for (const fs::path& path : {root / listed, data / listed.filename(),
                                beside_program.lexically_proximate(fs::current_path()) / listed.filename()}) {
-    if (fs::is_regular_file(path)) return path;
+    if (is_file(path)) return path;
   }
   return std::nullopt;
 }
 
 bool has_size(const fs::path& path, glm::ivec2 size) {
-  if (!fs::is_regular_file(path)) return false;
+  if (!is_file(path)) return false;
   const Image picture = read_exr_rgb(path);
   return picture.width == size.x && picture.height == size.y;
 }
@@ -80,7 +102,7 @@ ReportScene::Stored computed_reference(const ReportScene& scene, glm::ivec2 size
   const std::string what = fmt::format("--size {}x{} --spp {}", size.x, size.y, tracer.samples_per_pixel);
   const fs::path path =
       folder / fmt::format("{}-{}-{}x{}-{}.exr", scene.name, scene.hash, size.x, size.y, tracer.samples_per_pixel);
-  if (!fs::is_regular_file(path)) {
+  if (!is_file(path)) {
     fs::create_directories(folder);
     write_exr(path, to_channels(path_trace(scene.scene, scene.camera, tracer)));
   }
@@ -104,7 +126,7 @@ ReportScene open_report_scene(const std::string& name_or_file, const fs::path& d
   for (const Json& entry : list) {
     if (entry.at("name") != name_or_file && entry.at("name") != fs::path(name_or_file).stem().string()) continue;
     const std::optional<fs::path> path = file_of(entry, data);
-    if (fs::is_regular_file(name_or_file)) {
+    if (is_file(name_or_file)) {
       out.path = name_or_file;
       if (path && scene_hash(*path) == scene_hash(out.path)) listed = &entry;
     } else if (path) {
@@ -112,13 +134,13 @@ ReportScene open_report_scene(const std::string& name_or_file, const fs::path& d
       listed = &entry;
     } else {
       throw Error(ExitCode::bad_input, fmt::format("{}: {} is not there; the build makes it, or data/make_scenes.py",
-                                                   name_or_file, entry.at("file").get<std::string>()));
+                                                   name_or_file, one_line(entry.at("file").get<std::string>())));
     }
   }
-  if (out.path.empty() && fs::is_regular_file(name_or_file)) out.path = name_or_file;
+  if (out.path.empty() && is_file(name_or_file)) out.path = name_or_file;
   if (out.path.empty())
     throw Error(ExitCode::bad_input, fmt::format("{}: neither a file nor one of the scenes in {}: {}", name_or_file,
-                                                 (data / "scenes.json").string(), names_of(list)));
+                                                 (data / "scenes.json").string(), one_line(names_of(list))));
   out.name = out.path.stem().string();
   out.hash = hex(scene_hash(out.path));
   out.scene = load_scene(out.path);

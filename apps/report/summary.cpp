@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "apps/report/collect.h"
 #include "apps/report/html.h"
@@ -20,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-void write_text(const fs::path& path, const std::string& text) {
-  write_atomically(path, [&](const fs::path& p) { std::ofstream(p, std::ios::binary) << text; });
-}
 
 void copy_picture(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -86,7 +81,7 @@ std::string pictures(const Verdict& v, const fs::path& folder, const fs::path& f
 
 std::string scene_text(const Verdict& v, const fs::path& folder, const fs::path& files, const std::string& relative) {
   const std::string plot = fmt::format("{}-{}.svg", v.scene, v.light);
-  write_text(files / plot, plot_svg(v, true));
+  write_text_atomically(files / plot, plot_svg(v, true));
   std::string out = fmt::format("## {}, {} light\n\n", v.scene, v.light);
   for (const Sentence& s : sentences(v)) out += "- " + (s.warning ? "**" + s.text + "**" : s.text) + "\n";
   out += fmt::format("\n![error against time]({}/{})\n\n", relative, plot);
@@ -127,7 +122,7 @@ void write_summary(const Report& report, const fs::path& folder, const fs::path&
   for (const Verdict& v : report.verdicts) {
     if (v.light == "indirect") text += scene_text(v, folder, files, files.filename().string());
   }
-  write_text(markdown, text + papers_text(report));
+  write_text_atomically(markdown, text + papers_text(report));
 }
 
 }  // namespace volgi::app

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/one_line.h"
 
 namespace volgi::app {
 namespace {
@@ -100,7 +101,7 @@ Sweep parse_sweep(std::string_view json, const std::string& name) {
     technique.clear();
     check(sweep);
   } catch (const std::exception& error) {
-    throw Error(ExitCode::bad_input, fmt::format("{}: {}{}", name, technique, error.what()));
+    throw Error(ExitCode::bad_input, fmt::format("{}: {}", name, one_line(technique + error.what())));
   }
   return sweep;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "apps/bench/against_path_tracing.h"
@@ -261,15 +260,6 @@ std::string BenchCommand::gpu_command() const {
   return text;
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_atomically(path, [&](const std::filesystem::path& temporary) {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file) throw Error(ExitCode::cannot_write, path.string() + ": cannot write this file");
-  });
-}
-
 void BenchCommand::run_gpu(nlohmann::json& results) const {
   if (!page.empty()) check_writable(page);  // not after minutes
   const gl::Context context(device.context);
@@ -284,7 +274,7 @@ void BenchCommand::run_gpu(nlohmann::json& results) const {
   nlohmann::json& r = results["gpu"];
   r = bench_gpu([this](const std::string& name) { return scene(name); }, context, options,
                 [this](const std::string& table) { show(table); });
-  if (!page.empty()) write_text(page, gpu_page(r));
+  if (!page.empty()) write_text_atomically(page, gpu_page(r));
 }
 
 void BenchCommand::run_mpi(nlohmann::json& results) const {

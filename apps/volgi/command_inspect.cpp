@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -260,8 +259,7 @@ void InspectCommand::write_picture(const std::vector<openvdb::GridBase::Ptr>& gr
 
 void InspectCommand::write_page() const {
   const VdbFile vdb = read_vdb(file);
-  const std::string page = volume_page(printable(file.filename().string()), chosen(vdb));
-  write_atomically(out, [&](const std::filesystem::path& path) { std::ofstream(path, std::ios::binary) << page; });
+  write_text_atomically(out, volume_page(printable(file.filename().string()), chosen(vdb)));
 }
 
 int InspectCommand::run() const {

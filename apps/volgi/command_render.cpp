@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -394,9 +393,7 @@ int RenderCommand::run() {
   }
   auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
   figures["quality"] = quality_json(frame.quality, fitted, steps);
-  if (!stats.empty()) {
-    write_atomically(stats, [&](const std::filesystem::path& p) { std::ofstream(p) << figures.dump(1) << '\n'; });
-  }
+  if (!stats.empty()) write_text_atomically(stats, figures.dump(1) + '\n');
   if (!dump.empty()) write_virtual_lights(lights_file(), picture->virtual_lights());
   if (!quiet) {
     const int last = times.count - 1;

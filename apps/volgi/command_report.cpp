@@ -111,9 +111,7 @@ int print_repeated(const Repeated& repeated) {
 void write_report(const Report& report, const ReportOptions& options) {
   write_csv(report, options.output / "report.csv");
   write_json(report, options.output / "report.json");
-  const std::string page = report_page(report, options.output);
-  write_atomically(options.output / "index.html",
-                   [&](const fs::path& p) { std::ofstream(p, std::ios::binary) << page; });
+  write_text_atomically(options.output / "index.html", report_page(report, options.output));
   if (!options.summary.empty()) write_summary(report, options.output, options.summary);
   if (options.quiet) return;
   for (const Verdict& v : report.verdicts) {

@@ -1,5 +1,7 @@
 #include "apps/volgi/failure.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <exception>
 #include <iostream>
@@ -23,6 +25,24 @@ int say_failure() {
     return int(ExitCode::bad_input);
   }
 }
+
+namespace {
+
+std::terminate_handler otherwise = nullptr;
+
+void end_program() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    _exit(say_failure());
+  } catch (...) {
+  }
+  otherwise();
+}
+
+}  // namespace
+
+void end_well_without_memory() { otherwise = std::set_terminate(end_program); }
 
 int with_output_written(int code) {
   std::cout.flush();

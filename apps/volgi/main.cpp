@@ -69,6 +69,7 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  app::end_well_without_memory();
   try {
     const app::ProgramRanks ranks(argc, argv);
     return run(argc, argv, ranks);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <string_view>
 #include <vector>
 
@@ -69,7 +68,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
 void write_text(const fs::path& path, const std::string& text) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  write_atomically(path, [&](const fs::path& p) { std::ofstream(p, std::ios::binary) << text; });
+  write_text_atomically(path, text);
 }
 
 // --- manual pages ---------------------------------------------------------------------------------------------------

@@ -31,10 +31,6 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  write_atomically(path, [&](const fs::path& p) { std::ofstream(p, std::ios::binary) << text; });
-}
-
 }  // namespace
 
 std::string shared_command(const std::vector<std::string>& words) {
@@ -57,7 +53,7 @@ SharedFrames::SharedFrames(const fs::path& folder) : claims_(folder) {
   const fs::path file = folder / "command.txt";
   const std::string own = shared_command(words_of_this_process());
   const Claims::Claim claim = claims_.wait_for("command");
-  if (!fs::exists(file)) write_text(file, own);
+  if (!fs::exists(file)) write_text_atomically(file, own);
   const std::string others = text_of(file);
   if (others != own)
     throw Error(ExitCode::usage, fmt::format("--share {}: that folder is of another command, '{}', and this is '{}'; "
@@ -72,12 +68,13 @@ void SharedFrames::work(int first, int count, const std::function<void(int)>& fr
       count, name, [&](int k) { return fs::exists(done_file(k)); },
       [&](int k) {
         frame(first + k);
-        write_text(done_file(k), "");
+        write_text_atomically(done_file(k), "");
       });
 }
 
 void SharedFrames::keep_exposure(float stops) {
-  write_text(claims_.folder() / "exposure.txt", fmt::format("{}", stops));  // as many digits as it takes to be the same
+  write_text_atomically(claims_.folder() / "exposure.txt",
+                        fmt::format("{}", stops));  // as many digits as it takes to be the same
 }
 
 float SharedFrames::exposure() const {

@@ -156,6 +156,8 @@ std::string error_name(GLenum error) {
       return "GL_INVALID_FRAMEBUFFER_OPERATION";
     case GL_OUT_OF_MEMORY:
       return "GL_OUT_OF_MEMORY";
+    case GL_CONTEXT_LOST:
+      return "GL_CONTEXT_LOST";
     default:
       return "error " + std::to_string(error);
   }
@@ -190,16 +192,22 @@ bool Context::Data::open(EGLDisplay on_display, bool debug) {
   state.display = on_display;
   const EGLConfig config = choose_config(on_display);
   if (config == nullptr || eglBindAPI(EGL_OPENGL_API) == EGL_FALSE) return false;
-  const std::array<EGLint, 9> attributes{EGL_CONTEXT_MAJOR_VERSION_KHR,
-                                         4,
-                                         EGL_CONTEXT_MINOR_VERSION_KHR,
-                                         5,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
-                                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
-                                         EGL_CONTEXT_FLAGS_KHR,
-                                         debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
-                                         EGL_NONE};
-  state.context = eglCreateContext(on_display, config, EGL_NO_CONTEXT, attributes.data());
+  // A context that does not ask may end the process when its device is reset, or go on with wrong results.
+  for (const EGLint when_reset : {EGL_LOSE_CONTEXT_ON_RESET_KHR, EGL_NO_RESET_NOTIFICATION_KHR}) {
+    const std::array<EGLint, 11> attributes{EGL_CONTEXT_MAJOR_VERSION_KHR,
+                                            4,
+                                            EGL_CONTEXT_MINOR_VERSION_KHR,
+                                            5,
+                                            EGL_CONTEXT_OPENGL_PROFILE_MASK_KHR,
+                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT_KHR,
+                                            EGL_CONTEXT_FLAGS_KHR,
+                                            debug ? EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR : 0,
+                                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR,
+                                            when_reset,
+                                            EGL_NONE};
+    state.context = eglCreateContext(on_display, config, EGL_NO_CONTEXT, attributes.data());
+    if (state.context != EGL_NO_CONTEXT) break;
+  }
   if (state.context == EGL_NO_CONTEXT) return false;
   if (!has_word(eglQueryString(on_display, EGL_EXTENSIONS), "EGL_KHR_surfaceless_context")) {
     const std::array<EGLint, 5> size{EGL_WIDTH, 1, EGL_HEIGHT, 1, EGL_NONE};
@@ -336,6 +344,8 @@ bool current_is_software() {
 void throw_on_error() {
   State& state = current_state();
   const GLenum error = take_errors();
+  if (error == GL_CONTEXT_LOST || glGetGraphicsResetStatus() != GL_NO_ERROR)
+    throw Error(ExitCode::no_device, "the OpenGL context is lost: its device was reset; start again");
   std::string text = std::exchange(state.first_error, {});
   if (text.empty() && error != GL_NO_ERROR) text = error_name(error) + "; --gl-debug says where";
   if (text.empty()) return;

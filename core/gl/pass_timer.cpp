@@ -6,6 +6,7 @@
 #include <array>
 #include <cassert>
 #include <chrono>
+#include <cstdlib>
 #include <deque>
 #include <map>
 #include <optional>
@@ -111,6 +112,7 @@ struct PassTimer::Data {
 PassTimer::PassTimer(bool software, bool timing) : data_(std::make_unique<Data>()) {
   data_->kind = software ? Kind::wall : Kind::gpu;
   data_->timing = timing;
+  serialised_ = std::getenv("VOLGI_SERIALISE") != nullptr;
 }
 
 PassTimer::~PassTimer() = default;
@@ -153,7 +155,13 @@ PassTimer::Scope::~Scope() {
       s.gpu_ms = ms_since(s.start);
     }
   }
+  if (timer_->serialised_) wait_for_all();
   glPopDebugGroup();
+}
+
+void PassTimer::wait_for_all() {
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  glFinish();
 }
 
 void PassTimer::begin_frame() {

@@ -48,12 +48,18 @@ class PassTimer {
   };
   /// Wall time from begin_frame to end_frame (with a glFinish at both ends when timing).
   FrameTime frame_time() const;
+  /// For finding barriers that are missing: from now on every pass waits until all of it is done and seen (glFinish,
+  /// glMemoryBarrier of everything), as from the start where VOLGI_SERIALISE is in the environment. The picture is the
+  /// same, byte for byte, or passes race.
+  void serialise_passes() { serialised_ = true; }
   void reset();  // forgets all frames (after warm-up)
   Kind kind() const;
 
  private:
   struct Data;
+  static void wait_for_all();
   std::unique_ptr<Data> data_;
+  bool serialised_ = false;
 };
 
 }  // namespace volgi::gl

@@ -21,14 +21,18 @@ void delete_shader(GLuint id) { glDeleteShader(id); }
 void delete_program(GLuint id) { glDeleteProgram(id); }
 using Shader = Handle<delete_shader>;
 
+/// On one line.
 template <class GetParameter, class GetLog>
 std::string info_log(GLuint id, GetParameter get_parameter, GetLog get_log) {
   GLint length = 0;
   get_parameter(id, GL_INFO_LOG_LENGTH, &length);
   std::string log(size_t(std::max(length, 1)), '\0');
   get_log(id, length, nullptr, log.data());
-  log.resize(log.find('\0') == std::string::npos ? log.size() : log.find('\0'));
-  return log;
+  log.resize(std::min(log.size(), log.find('\0')));
+  log.resize(log.find_last_not_of(" \n") + 1);
+  std::string line;
+  for (const char c : log) line += c == '\n' ? std::string("; ") : std::string(1, c);
+  return line;
 }
 
 std::string define_lines(const std::vector<std::string>& defines) {

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <new>
 
 #include "core/gltf/gltf_internal.h"
 
@@ -150,6 +151,7 @@ Document read_document(const fs::path& path, const SceneReading& reading) {
   } catch (const std::out_of_range& e) {  // an empty buffer
     problems = e.what();
   }
+  if (problems.find(std::bad_alloc().what()) != std::string::npos) throw std::bad_alloc();  // which tinygltf catches
   if (!parsed) refuse(path, fmt::format("not a valid glTF file: {}", problems));
   if (!warnings.empty()) warn(path, warnings);
   decompress_meshopt(document);

@@ -1,26 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/error.h"
 #include "core/gltf/gltf_internal.h"
 #include "core/log.h"
+#include "core/one_line.h"
 
 namespace volgi::gltf {
-namespace {
-
-/// A file's strings may hold line breaks, escape sequences or megabytes.
-std::string one_line(std::string_view text) {
-  constexpr size_t longest = 300;
-  std::string line(text.substr(0, longest));
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return std::uint8_t(c) < 32 || c == 127; }, ' ');
-  if (text.size() > longest) line += "...";
-  return line;
-}
-
-}  // namespace
-
 void refuse(const std::filesystem::path& file, std::string_view what) {
   throw Error(ExitCode::bad_input, fmt::format("{}: {}", file.string(), one_line(what)));
 }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/encoded_picture_internal.h"
 #include "core/gltf/gltf_internal.h"
 #include "core/progress.h"
 
@@ -29,7 +30,9 @@ bool is_png_or_jpeg(Bytes bytes) {
   const auto begins_with = [&](std::initializer_list<unsigned char> magic) {
     return bytes.size >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.data);
   };
-  return begins_with({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}) || begins_with({0xff, 0xd8, 0xff});
+  const EncodedPicture picture(bytes.data, bytes.size);
+  if (begins_with({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'})) return png_chunks_fit(picture);
+  return begins_with({0xff, 0xd8, 0xff}) && jpeg_tables_fit(picture);
 }
 
 constexpr int gl_clamp = 0x2900;  // of OpenGL before 3.1; never glTF's
@@ -103,9 +106,9 @@ void apply_transform(const Document& document, const tinygltf::Value& transform,
 
 namespace {
 
-void check_size(const Document& document, int width, int height, const std::string& name) {
+void check_size(const Document& document, int width, int height, Bytes bytes, const std::string& name) {
   if (width >= 1 && height >= 1 && width <= largest_edge && height <= largest_edge &&
-      std::int64_t(width) * height <= max_pixels)
+      std::int64_t(width) * height <= max_pixels && pixels_fit(std::int64_t(width) * height, bytes.size))
     return;
   refuse(document.path, fmt::format("{} has {}x{} pixels, which is too large", name, width, height));
 }
@@ -114,7 +117,7 @@ TextureImage decode_webp(const Document& document, Bytes bytes, const std::strin
   int width = 0, height = 0;
   if (WebPGetInfo(bytes.data, bytes.size, &width, &height) == 0)
     refuse(document.path, fmt::format("{} is no WebP that can be read", name));
-  check_size(document, width, height, name);
+  check_size(document, width, height, bytes, name);
   TextureImage image{width, height, std::vector<std::uint8_t>(size_t(width) * size_t(height) * 4)};
   if (WebPDecodeRGBAInto(bytes.data, bytes.size, image.rgba.edit().data(), image.rgba.size(), 4 * width) == nullptr)
     refuse(document.path, fmt::format("{} cannot be decoded", name));
@@ -133,7 +136,7 @@ TextureImage decode_image(const Document& document, size_t index) {
   const bool known = is_png_or_jpeg(bytes) && bytes.size <= size_t(std::numeric_limits<int>::max()) &&
                      stbi_info_from_memory(bytes.data, int(bytes.size), &width, &height, &channels) != 0;
   if (!known) refuse(document.path, fmt::format("{} is no PNG, JPEG or WebP that can be read", name));
-  check_size(document, width, height, name);
+  check_size(document, width, height, bytes, name);
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes.data, int(bytes.size), &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) refuse(document.path, fmt::format("{} cannot be decoded: {}", name, stbi_failure_reason()));

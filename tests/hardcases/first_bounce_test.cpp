@@ -13,6 +13,7 @@
 #include "reference/virtual_light_tracer.h"
 #include "screen/lights/lattice/wave_lattice.h"
 #include "screen/visibility/visibility_choice.h"
+#include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
@@ -92,11 +93,15 @@ TEST_F(FirstBounce, SumOfLights) {
         return picture(scene, o);
       };
       const double deviation = rmse_percent(lit_by({a, b}), sum_of(lit_by({a}), lit_by({b})));
-      record("sum_" + name_of(mode) + "_stride_" + std::to_string(stride), deviation);
       // 0.1 is asked for. Which pixels are gathered again depends on how much light there is (0.20 measured); negative
       // lights are chosen for all lights together, and what they take ends at zero.
       const double limit = mode == Gi("negative") ? 2.0 : stride == 1 ? 0.1 : 0.22;
-      EXPECT_LT(deviation, limit) << name_of(mode) << ' ' << stride;
+      expect_of_frame("sum", fmt::format("{}, cornell, gathered at one pixel of {}", name_of(mode), stride * stride),
+                      deviation, limit, 0.1,
+                      limit == 0.1 ? ""
+                      : mode == Gi("vpl")
+                          ? "which pixels are gathered again depends on how much light there is"
+                          : "negative lights are chosen for all lamps together, and what they take ends at zero");
     }
   }
 }
@@ -121,8 +126,7 @@ TEST_F(FirstBounce, Scale) {
       const Image ref = picture(scene, options(mode, 64));
       for (const float s : {1e-3f, 1e3f}) {
         const double deviation = rmse_percent(picture(scaled(scene, s), options(mode, 64)), ref);
-        record(std::string("scale_") + name + "_" + name_of(mode) + (s < 1.0f ? "_1e-3" : "_1e3"), deviation);
-        EXPECT_LT(deviation, 0.1) << name << ' ' << name_of(mode) << " x " << s;
+        expect_of_frame("scale", fmt::format("{}, {} x {:g}", name_of(mode), name, s), deviation, 0.1);
       }
     }
   }
@@ -134,8 +138,7 @@ TEST_F(FirstBounce, Offset) {
     const Scene there = load_moved(source_dir() / "data" / (std::string(name) + ".glb"), 1e5);
     for (const Gi mode : kModes) {
       const double deviation = rmse_percent(picture(there, options(mode, 64)), picture(here, options(mode, 64)));
-      record(std::string("offset_") + name + "_" + name_of(mode), deviation);
-      EXPECT_LT(deviation, 0.1) << name << ' ' << name_of(mode);
+      expect_of_frame("offset", fmt::format("{}, {}", name_of(mode), name), deviation, 0.1);
     }
   }
 }
@@ -155,8 +158,9 @@ TEST_F(FirstBounce, Range) {
       }
       for (const float factor : {1e-6f, 1e-3f, 1e4f, 1e9f}) {
         const double rmse = rmse_percent(picture(brighter(scene, factor), o), ref, double(factor));
-        record(std::string("range_") + name + "_" + name_of(mode) + "_" + std::to_string(std::log10(factor)), rmse);
-        EXPECT_LT(rmse, mode == Gi("vpl") ? 0.1 : 0.6) << name << ' ' << name_of(mode) << " x " << factor;
+        expect_of_frame("range", fmt::format("{}, {} x {:g}, RMSE", name_of(mode), name, factor), rmse,
+                        mode == Gi("vpl") ? 0.1 : 0.6, 0.1,
+                        mode == Gi("vpl") ? "" : "which candidates become lights hangs on sums that rounding decides");
       }
     }
     FrameOptions o = options(Gi("vpl"), 48);
@@ -352,10 +356,10 @@ TEST_F(FirstBounce, Flicker) {
   for (size_t m = 0; m < frames.size(); ++m) {
     const Flicker& same_lights = of_exact[all[m].list];
     const std::string& name = all[m].name;
-    record("flicker_" + name + "_median", of_frame[m].median() / same_lights.median());
-    record("flicker_" + name + "_largest", of_frame[m].largest() / same_lights.largest());
-    EXPECT_LT(of_frame[m].median(), 1.5 * same_lights.median()) << name;
-    EXPECT_LT(of_frame[m].largest(), 1.5 * same_lights.largest()) << name;
+    expect_of_frame("flicker", name + ", cornell, 20 steps, median", of_frame[m].median() / same_lights.median(), 1.5,
+                    {}, {}, "times");
+    expect_of_frame("flicker", name + ", cornell, 20 steps, largest", of_frame[m].largest() / same_lights.largest(),
+                    1.5, {}, {}, "times");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "reference/picture_files.h"
 #include "screen/frame/registry.h"
 #include "screen/gather/gather_choice.h"
+#include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
@@ -78,9 +79,11 @@ TEST_F(Hybrid, BackendsAgree) {
       return screen::image_from_texture(frame.radiance());
     };
     const double difference = rmse_percent(picture_on(screen::Backend::gpu), picture_on(screen::Backend::cpu));
-    RecordProperty(name, std::to_string(difference));
-    // room: docs/results/where-we-miss.md.
-    EXPECT_LT(difference, std::string(name) == "room" ? 1.25 : 1.0) << name;
+    const bool room = std::string(name) == "room";
+    expect_hard_case(
+        {"twin", fmt::format("hybrid, {}, every pixel of the picture", name), "both", difference, room ? 1.25 : 1.0,
+         1.0, room ? "a sunlit strip narrower than a cell: rays that meet triangles know where it is" : ""},
+        context().software());
   }
 }
 
@@ -176,7 +179,7 @@ TEST_F(Hybrid, ThinWallDarkRoomStaysDark) {
   }
   ASSERT_GT(dark_pixels, 1000);
   ASSERT_GT(lit_pixels, 1000);
-  EXPECT_LT(dark / dark_pixels, 0.005 * lit / lit_pixels);
+  expect_of_frame("thin", "hybrid, as placed by default", 100.0 * dark / dark_pixels * lit_pixels / lit, 0.5);
 }
 
 TEST_F(Hybrid, SameBytesTwice) {

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/visibility/embree_scene.h"
+#include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/paths.h"
@@ -48,13 +49,11 @@ class Leak : public GlTest {
   }
 
   void expect_below(double limit, const screen::FrameOptions& o, const std::string& what) const {
-    const double share = leak(o);
-    EXPECT_LT(share, limit) << what;
-    RecordProperty(what, std::to_string(100.0 * share) + " %");
+    expect_of_frame("thin", what, 100.0 * leak(o), 100.0 * limit);
   }
 
   static std::string name(const char* mode, int cells, float shift) {
-    return std::string(mode) + "_" + std::to_string(cells) + "_" + std::to_string(int(100.0f * shift));
+    return fmt::format("{}, {} cells shifted by {}", mode, cells, shift);
   }
 
  private:
@@ -68,7 +67,7 @@ TEST_F(Leak, ThinWallConservative) {
        {std::tuple(16, 0.0f, 0.005), {24, 0.0f, 0.005}, {16, 0.25f, 0.02}, {16, 0.5f, 0.02}}) {
     screen::FrameOptions o = options(cells, shift);
     o.of<VolumeOptions>().scheme.scheme = Scheme::conservative;
-    expect_below(limit, o, name("conservative", cells, shift));
+    expect_below(limit, o, name("volume conservative", cells, shift));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "reference/path_tracer.h"
 #include "reference/picture_files.h"
 #include "screen/sources/sky/sky_maps.h"
+#include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/paths.h"
@@ -188,8 +189,7 @@ TEST_F(SkyPictures, ARoomOnOpenGroundKeepsItsLight) {
   o.of<VolumeOptions>().grid_cells = 256;
   const auto relative =
       error_of(render(context(), scene, scene.cameras[0], o).image, scene, PathTracerOptions::Light::indirect);
-  RecordProperty("closed", std::to_string(relative.ratio) + " / " + std::to_string(relative.rmse_pct));
-  EXPECT_NEAR(relative.ratio, 1.0, 0.03);
+  expect_of_frame("plane", "hybrid, a closed room on open ground, energy", off_percent(relative.ratio), 3.0);
 }
 
 // Without its roof the sky comes in. Its maps lie over the walls, not over the ground, where a texel would be as wide
@@ -198,8 +198,8 @@ TEST_F(SkyPictures, ACourtOnOpenGroundHasItsShadows) {
   const Scene scene = on_open_ground(false);
   const auto relative =
       error_of(picture(scene, "hybrid", screen::LightPart::direct, {64, 64}), scene, PathTracerOptions::Light::direct);
-  RecordProperty("open", std::to_string(relative.ratio) + " / " + std::to_string(relative.rmse_pct));
-  EXPECT_NEAR(relative.ratio, 1.0, 0.03);
+  expect_of_frame("plane", "hybrid, a court on open ground, direct light of the sky, energy",
+                  off_percent(relative.ratio), 3.0);
   EXPECT_LT(relative.rmse_pct, 8.0);
 }
 

@@ -3,6 +3,7 @@
 
 #include "reference/metrics.h"
 #include "reference/path_tracer.h"
+#include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/volume_scenes.h"
@@ -52,10 +53,11 @@ TEST_F(White, TheInsideOfALampChangesNothing) {
     for (const Gi gi : {Gi("hybrid"), Gi("volume")}) {
       const Shown s = shown(context(), scene, gi);
       const std::string key = std::string(gi) + (albedo < 1.0f ? "_grey" : "_white");
-      RecordProperty(key, std::to_string(s.error.ratio) + " in " + std::to_string(s.bounces.orders));
-      EXPECT_NEAR(s.error.ratio, 1.0, gi == Gi("hybrid") ? 0.06 : 0.15) << key;
+      expect_of_frame("white", fmt::format("{}, a closed lamp of albedo {}, energy", gi, albedo),
+                      off_percent(s.error.ratio), 3.0);
+      expect_of_frame("white", fmt::format("{}, a closed lamp of albedo {}, orders", gi, albedo), s.bounces.orders,
+                      30.0, {}, {}, "orders");
       EXPECT_TRUE(s.bounces.converged) << key;
-      EXPECT_LT(s.bounces.orders, 30) << key;
     }
   }
 }
