@@ -40,9 +40,10 @@ void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--gi", gi, recipe_help())->check(CLI::IsMember(names));
   command
       .add_option("--budget", budget,
-                  "of --gi auto: time a picture, or error (root mean square of the shown light's mean); chosen by what "
+                  "of --gi auto: time a picture such as 50ms, or error such as 3% (root mean square, of the shown "
+                  "light's mean); by what "
                   "other scenes took, on this device where volgi calibrate has measured it")
-      ->type_name("50ms|3%");
+      ->type_name("TIME|ERROR%");
   command.add_flag("--explain", explain, "--gi auto: what was not chosen, and what it would take and show");
   command.add_option("--light", light, "light shown; direct: straight from any emitter, indirect: after a reflection")
       ->check(CLI::IsMember(LIGHTS))

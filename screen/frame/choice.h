@@ -25,7 +25,7 @@ struct PictureFacts {
 
 /// A recipe and its parameters, as the command line has them.
 struct FrontSetting {
-  std::string name;  // "hybrid --quality fast"
+  std::string name;  // in words: "none --quality fast"
   std::vector<std::string> options;
   int pictures = 1;  // that are averaged into one
 };
