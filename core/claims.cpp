@@ -200,6 +200,11 @@ void Claims::work(int count, const std::function<std::string(int)>& name, const 
     std::erase_if(open, finished);
     if (!did_one && !open.empty()) std::this_thread::sleep_for(kLook);
   }
+  // A worker may be killed when its piece is done and not yet given back.
+  for (int k = 0; k < count; ++k) {
+    std::error_code error;
+    if (fs::exists(file_of(name(k)), error)) take(name(k));
+  }
 }
 
 }  // namespace volgi

@@ -13,4 +13,16 @@ void warn_of_wrong_result(std::string_view message);
 void set_quiet(bool quiet);
 bool is_quiet();
 
+/// Quiet for as long as it lives: what is done on the way to something else has no progress of its own.
+class Quiet {
+ public:
+  Quiet() : before_(is_quiet()) { set_quiet(true); }
+  ~Quiet() { set_quiet(before_); }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+
+ private:
+  bool before_;
+};
+
 }  // namespace volgi

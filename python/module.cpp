@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/volgi/automatic.h"
 #include "apps/volgi/frame_options.h"
 #include "apps/volgi/metrics_json.h"
 #include "apps/volgi/scene_options.h"
@@ -155,6 +156,11 @@ py::dict render(LoadedScene& loaded, const py::kwargs& keywords) {
   with_size.size_text = size;
   screen::FrameOptions options = asked.frame_options(with_size.size());
   const Camera camera = loaded.options.camera(loaded.scene);
+  const auto automatic = app::choose_automatically(asked, loaded.scene, camera, options.size, context().device_name());
+  if (automatic) {
+    asked = automatic->frame;
+    options = asked.frame_options(options.size);
+  }
   if (screen::quality_from_name(asked.quality) == screen::Quality::truth)
     throw Error(ExitCode::usage, "quality='truth' climbs picture by picture: only the command does that");
   const int wanted = asked.fit(loaded.scene, glm::vec3(camera.world_from_camera[3]), 0, options).needs.samples;
@@ -179,6 +185,7 @@ py::dict render(LoadedScene& loaded, const py::kwargs& keywords) {
   for (glm::vec3& p : image.pixels) p /= float(count);
   out["color"] = array_of(image);
   out["layers"] = layers;
+  if (automatic) out["auto"] = py::module_::import("json").attr("loads")(automatic->json().dump());
   return out;
 }
 
@@ -325,7 +332,8 @@ PYBIND11_MODULE(volgi, m) {
   m.def(
       "render", &render,
       "render(scene, gi='hybrid', light='full', grid=48, set={...}, size=..., ...): {'color': height x width x 3, row "
-      "0 at the top, 'layers': the same by what light they hold}; equal to the command's EXR.");
+      "0 at the top, 'layers': the same by what light they hold}; equal to the command's EXR. With gi='auto', "
+      "budget='3%' also 'auto': what was chosen, and the others.");
   m.def("reference", &reference,
         "reference(scene, spp=256, seed=1, bounces=N, light='full', size=...): path tracing; color, direct, noise, "
         "position, normal, albedo, id, depth.");

@@ -5,8 +5,11 @@
 
 #include "apps/demo/presets.h"
 #include "apps/demo/view.h"
+#include "apps/volgi/automatic.h"
 #include "apps/volgi/parse_number.h"
+#include "apps/volgi/scene_options.h"
 #include "core/error.h"
+#include "core/scene_source.h"
 
 namespace volgi::demo {
 
@@ -85,6 +88,23 @@ std::filesystem::path DemoOptions::settings_path() const {
   return settings_file.empty() ? default_settings_path() : settings_file;
 }
 
+Settings DemoOptions::with_choice(Settings settings, const std::string& device_name) const {
+  if (!frame.automatic()) return settings;
+  app::SceneOptions first;
+  first.scene_path = scenes.front();
+  Scene scene = SceneSource(first.scene_path, reading.reading).at(time_s);
+  light.apply(scene);
+  const Camera camera = first.camera(scene);
+  const auto automatic = app::choose_automatically(frame, scene, camera, picture_size(), device_name, true);
+  fmt::print("{}{}", automatic->summary(), frame.explain ? automatic->rejected() : "");
+  std::fflush(stdout);
+  settings.frame = automatic->frame.frame_options(glm::ivec2(1));
+  automatic->frame.fit(scene, glm::vec3(camera.world_from_camera[3]), 0, settings.frame);
+  settings.frame.of<VolumeOptions>().grid_box.reset();  // the session has its own
+  settings.grid_fits_scene = false;
+  return settings;
+}
+
 Settings DemoOptions::settings(std::vector<std::string>& unknown) const {
   Settings settings;
   if (const std::filesystem::path file = settings_path(); !file.empty()) {
@@ -92,6 +112,9 @@ Settings DemoOptions::settings(std::vector<std::string>& unknown) const {
     settings = std::move(read.settings);
     unknown = std::move(read.unknown);
   }
+  const app::FrameCommandOptions usual;
+  if (frame.cells_times != usual.cells_times || frame.lights_times != usual.lights_times)
+    throw Error(ExitCode::usage, "--cells-times, --lights-times: of volgi render; here --grid, --vpls and --vals");
   if (headless || frame.given()) {
     app::FrameCommandOptions asked = frame;
     if (frame.gi.empty() && !headless) asked.gi = settings.frame.recipe;  // the last one
@@ -99,7 +122,7 @@ Settings DemoOptions::settings(std::vector<std::string>& unknown) const {
     settings.grid_fits_scene = !frame.volume.grid_cells;
   }
   if (!preset.empty()) apply_preset(preset, settings);
-  if (preset.empty() && frame.quality != app::FrameCommandOptions().quality) apply_preset(frame.quality, settings);
+  if (preset.empty() && frame.quality != usual.quality) apply_preset(frame.quality, settings);
   if (headless) settings.view = info(View::picture).name;
   if (!view.empty()) settings.view = info(view_of(view)).name;
   if (exposure == "auto") {

@@ -43,6 +43,10 @@ struct DemoOptions {
   /// Those of the file, changed as the command line says. @param unknown  lines about what the file has and this
   /// version does not know.
   Settings settings(std::vector<std::string>& unknown) const;
+  /// Where --gi is auto: with what it chooses for the first scene, one picture at a time, which it says. Reads the
+  /// scene.
+  /// @param device_name  gl::Context::device_name().
+  Settings with_choice(Settings settings, const std::string& device_name) const;
   std::filesystem::path settings_path() const;
 };
 

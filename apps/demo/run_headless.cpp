@@ -75,7 +75,8 @@ Headless::Headless(const DemoOptions& options)
     : options_(options),
       size_(options.picture_size()),
       context_(options.device.context),
-      viewer_(context_, settings_of(options, unknown_), {}, options.light, options.reading.reading) {
+      viewer_(context_, options.with_choice(settings_of(options, unknown_), context_.device_name()), {}, options.light,
+              options.reading.reading) {
   gl::set_shader_folder(options.shaders);
   viewer_.picture_folder = options.pictures;
   viewer_.session.open(options.scenes, options.time_s);

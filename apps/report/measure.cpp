@@ -9,6 +9,7 @@
 #include "apps/report/added_picture.h"
 #include "apps/report/machine.h"
 #include "apps/volgi/metrics_json.h"
+#include "apps/volgi/scene_options.h"
 #include "core/error.h"
 #include "reference/error_map.h"
 #include "reference/flip.h"
@@ -33,13 +34,16 @@ float exposure_of(const ReportReference& reference) {
   return sum > 0 ? float(std::log2(kShownMean * count / sum)) : 0.0f;
 }
 
+int frames_of(const Setting& setting, const MeasureContext& context) { return setting.frames.value_or(context.frames); }
+
 std::string command_of(const ReportScene& scene, const Setting& setting, const std::string& light,
                        const MeasureContext& context) {
+  const int count = frames_of(setting, context);
   if (setting.renderer == ADDED_PICTURE) return fmt::format("cp {} point.exr", setting.options.at(1));
   const bool frames = setting.renderer == "render";
   return fmt::format("volgi {} {}{} {} --light {} --size {}x{}{} -o point.exr{}", setting.renderer, scene.path.string(),
                      scene.light_arguments, fmt::join(setting.options, " "), light, context.size.x, context.size.y,
-                     frames ? fmt::format(" --frames {}", context.frames) : "", frames ? " --stats point.json" : "");
+                     frames ? fmt::format(" --frames {}", count) : "", frames ? " --stats point.json" : "");
 }
 
 Image scaled(Image picture, double factor) {
@@ -74,10 +78,19 @@ void judge(Json& point, const Image& picture, const ReportReference& all_bounces
   point["one_bounce_metrics"] = figures(picture, *one_bounce);
 }
 
+bool takes_more_times(const Setting& setting, const std::string& light) {
+  return !setting.times_at.empty() && light == setting.lights.front();
+}
+
+Json times_json(const Rendering& rendering) {
+  return {{"min", rendering.min_ms}, {"median", rendering.median_ms}, {"max", rendering.max_ms}};
+}
+
 void add_times(Json& point, const Rendering& rendering) {
   if (rendering.timer.empty()) return;  // nobody has measured it
   point["timer"] = rendering.timer;
-  point["frame_ms"] = {{"min", rendering.min_ms}, {"median", rendering.median_ms}, {"max", rendering.max_ms}};
+  point["frame_ms"] = times_json(rendering);
+  point["cpu_ms"] = rendering.cpu_ms;
   point["passes"] = rendering.passes;
   point["memory_bytes"] = rendering.memory_bytes ? Json(*rendering.memory_bytes) : Json();
 }
@@ -125,10 +138,11 @@ Json point_identity(const ReportScene& scene, const Setting& setting, const std:
                 {"options", setting.options},
                 {"light", light},
                 {"size", {context.size.x, context.size.y}},
-                {"frames", context.frames},
+                {"frames", frames_of(setting, context)},
                 {"device", added ? "unknown: another renderer's" : context.context.device_name()},
                 {"machine", machine_name()},
                 {"program", program_name()}};
+  if (takes_more_times(setting, light)) identity["times_at"] = setting.times_at;
   identity["key"] = hex(content_hash(identity.dump()));
   return identity;
 }
@@ -151,15 +165,25 @@ Json measure_point(const ReportScene& scene, const Setting& setting, const std::
   point["varied"] = setting.varied;
   point["one_bounce"] = setting.one_bounce;
   point["baseline"] = setting.baseline;
+  point["light_arguments"] = scene.light_arguments;
   point["triangles"] = scene.scene.triangle_count();
   point["command"] = command_of(scene, setting, light, context);
   point["reference"] = all_bounces.path.string();
   point["reference_command"] = all_bounces.command;
   point["compare"] = fmt::format("volgi compare {} point.exr --light {}", all_bounces.path.string(), light);
   try {
-    const Rendering rendering = context.renderers.at(setting.renderer)(
-        {scene.scene, scene.camera, context.size, light, context.frames, setting.options, context.context});
+    RenderTask task{scene.scene,     scene.camera,   context.size, light, frames_of(setting, context),
+                    setting.options, context.context};
+    const Rendering rendering = context.renderers.at(setting.renderer)(task);
     add_times(point, rendering);
+    if (takes_more_times(setting, light)) {
+      SceneOptions other;
+      other.size_text = setting.times_at;
+      task.size = other.size();
+      const Rendering again = context.renderers.at(setting.renderer)(task);
+      point["times_at"] = {
+          {"size", {task.size.x, task.size.y}}, {"frame_ms", times_json(again)}, {"cpu_ms", again.cpu_ms}};
+    }
     judge(point, rendering.picture, all_bounces, one_bounce);
     write_pictures(point, rendering.picture, all_bounces, context.folder);
   } catch (const Error& error) {

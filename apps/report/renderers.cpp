@@ -5,6 +5,7 @@
 
 #include "apps/bench/timing.h"
 #include "apps/report/added_picture.h"
+#include "apps/volgi/automatic.h"
 #include "apps/volgi/frame_options.h"
 #include "core/error.h"
 #include "core/gl/pass_timer.h"
@@ -38,7 +39,8 @@ AskedFrame frame_options(const std::vector<std::string>& options, const std::str
   parse(command, options);
   asked.command.light = light;
   asked.options = asked.command.frame_options(size);
-  asked.by_quality = command.count("--quality") > 0;
+  asked.by_quality =
+      command.count("--quality") > 0 || command.count("--cells-times") > 0 || command.count("--lights-times") > 0;
   if (screen::quality_from_name(asked.command.quality) == screen::Quality::truth)
     throw Error(ExitCode::usage, "--quality truth climbs from picture to picture, which is no frame to time");
   return asked;
@@ -59,16 +61,25 @@ Image mean_of_samples(screen::Frame& frame, const Camera& camera, int count, gl:
 
 Rendering render_frames(const RenderTask& task) {
   AskedFrame asked = frame_options(task.options, task.light, task.size);
+  if (const auto automatic =
+          choose_automatically(asked.command, task.scene, task.camera, task.size, task.context.device_name())) {
+    asked.command = automatic->frame;
+    asked.options = asked.command.frame_options(task.size);
+    asked.by_quality = true;
+  }
   const glm::vec3 eye(task.camera.world_from_camera[3]);
   const int samples = asked.by_quality ? asked.command.fit(task.scene, eye, 0, asked.options).needs.samples : 1;
   screen::Frame frame(task.scene, asked.options);
   gl::PassTimer timer(task.context.software(), true);
   const int warm_up = warm_up_frames(task.frames);
+  std::vector<double> cpu_ms;
   for (int f = 0; f < warm_up + task.frames; ++f) {
     if (f == warm_up) timer.reset();
+    const double before_ms = processor_ms();
     timer.begin_frame();
     frame.render(task.camera, timer);
     timer.end_frame();
+    if (f >= warm_up) cpu_ms.push_back(processor_ms() - before_ms);
   }
   Rendering out;
   gl::PassTimer untimed(task.context.software(), false);
@@ -78,6 +89,7 @@ Rendering render_frames(const RenderTask& task) {
   out.min_ms = samples * time.min_ms;  // of the picture: passes are of one sample
   out.median_ms = samples * time.median_ms;
   out.max_ms = samples * time.max_ms;
+  out.cpu_ms = samples * median(cpu_ms);
   out.timer = timer.kind() == gl::PassTimer::Kind::gpu ? "gpu" : "wall";
   out.memory_bytes = frame.report().memory_bytes;
   return out;
@@ -95,34 +107,25 @@ PathTracerOptions tracer_options(const std::vector<std::string>& options) {
   return tracer;
 }
 
-// The tracer's own progress bar would write over the report's.
-class Quiet {
- public:
-  Quiet() : before_(is_quiet()) { set_quiet(true); }
-  ~Quiet() { set_quiet(before_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
-
- private:
-  bool before_;
-};
-
 Rendering trace_paths(const RenderTask& task) {
   PathTracerOptions tracer = tracer_options(task.options);
   tracer.size = task.size;
   tracer.light = task.light == "indirect" ? PathTracerOptions::Light::indirect : PathTracerOptions::Light::full;
-  const Quiet quiet;
+  const Quiet quiet;  // the tracer's own progress bar would write over the report's
   Rendering out;
-  std::vector<double> frames, builds;
+  std::vector<double> frames, builds, cpu_ms;
   if (task.frames > 1) path_trace(task.scene, task.camera, tracer);  // nothing but threads and caches to warm
   for (int f = 0; f < task.frames; ++f) {
     builds.push_back(time_ms([&] { const PathIntegrator built_alone(task.scene); }));
+    const double before_ms = processor_ms();
     frames.push_back(time_ms([&] { out.picture = path_trace(task.scene, task.camera, tracer).color; }));
+    cpu_ms.push_back(processor_ms() - before_ms);
   }
   const auto [smallest, largest] = std::minmax_element(frames.begin(), frames.end());
   out.min_ms = *smallest;
   out.median_ms = median(frames);
   out.max_ms = *largest;
+  out.cpu_ms = median(cpu_ms);
   const double build_ms = std::min(median(builds), out.median_ms);
   out.passes.push_back({{"name", "reference/build"}, {"ms", build_ms}});
   out.passes.push_back({{"name", "reference/trace"}, {"ms", out.median_ms - build_ms}});

@@ -26,8 +26,9 @@ struct RenderTask {
 
 /// A picture and what it took.
 struct Rendering {
-  Image picture;                                                    // of the last frame
-  double min_ms = 0, median_ms = 0, max_ms = 0;                     // a frame
+  Image picture;                                 // of the last frame
+  double min_ms = 0, median_ms = 0, max_ms = 0;  // a frame
+  double cpu_ms = 0;  // processor time of a frame, all threads: what else runs does not change it. Median
   nlohmann::ordered_json passes = nlohmann::ordered_json::array();  // {"name", "ms"}: medians
   std::string timer;                                                // gpu or wall; empty: there are no times
   std::optional<size_t> memory_bytes;                               // of GL objects and volume; none: not known

@@ -42,6 +42,8 @@ void add_technique(Sweep& sweep, const Json& table, const Json& entry) {
   own.baseline = entry.value("baseline", false);
   own.options = pairs_of(entry, "options");
   own.lights = strings(entry, "lights", all);
+  own.times_at = entry.value("times_at", table.value("times_at", std::string()));
+  if (entry.contains("frames")) own.frames = entry.at("frames").get<int>();
   if (entry.value("unvaried", true)) sweep.settings.push_back(own);
   const auto add = [&](const std::vector<std::string>& changes) {
     Setting varied = own;

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@ struct Setting {
   std::string varied;                // what differs from the technique's own line; empty for that line itself
   std::vector<std::string> lights;   // full, indirect
   std::vector<std::string> scenes;   // by name; none: all of the report
+  std::string times_at;              // another size that times are taken at with the first of the lights; empty: none
+  std::optional<int> frames;         // none: the sweep's
   bool one_bounce = false;           // carries the first bounce only, and is compared with that as well
   bool baseline = false;             // the technique that others are held against
 
@@ -33,7 +36,7 @@ struct Sweep {
 /// a sweep: "vary" changes one option at a time through the values listed, "also" adds options together; with
 /// "unvaried" false the technique's own line is no point. "baseline" marks what others are held against. "one_bounce"
 /// says that it carries one bounce; "lights" and "varied_lights" are those that its own line and the others are
-/// measured in, of the whole table where it names none.
+/// measured in, of the whole table where it names none. "times_at" and "frames" are a technique's or the table's.
 /// @param name  of the file, for messages. @throws Error(bad_input) naming the technique and what is wrong with it.
 Sweep parse_sweep(std::string_view json, const std::string& name);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "apps/volgi/area_video.h"
+#include "apps/volgi/automatic.h"
 #include "apps/volgi/commands.h"
 #include "apps/volgi/device_options.h"
 #include "apps/volgi/frame_options.h"
@@ -365,9 +366,18 @@ int RenderCommand::run() {
     return int(ExitCode::done);
   }
   const LeadsRanks leads;
-  FrameCommandOptions::Fitted fitted = fit(loaded, 0, options);
   const gl::Context context(device.context);
+  const bool explained = frame.explain;
+  const std::optional<Automatic> automatic =
+      choose_automatically(frame, loaded, camera, scene.size(), context.device_name());
+  if (automatic) {
+    frame = automatic->frame;
+    options = frame.frame_options(scene.size());
+  }
+  FrameCommandOptions::Fitted fitted = fit(loaded, 0, options);
   if (!quiet) fmt::print("device: {} ({})\n", context.device_name(), context.version());
+  if (automatic && !quiet) fmt::print("{}", automatic->summary());
+  if (automatic && explained) fmt::print("{}", automatic->rejected());
   std::optional<screen::Frame> picture(std::in_place, loaded, options);
   warn_of_open_scene(loaded, glm::vec3(camera.world_from_camera[3]));
   for (const std::string& line : picture->announcements()) {
@@ -393,6 +403,7 @@ int RenderCommand::run() {
   }
   auto figures = numbers(*picture, options, loaded, context, timer, timed_frames);
   figures["quality"] = quality_json(frame.quality, fitted, steps);
+  if (automatic) figures["auto"] = automatic->json();
   if (!stats.empty()) write_text_atomically(stats, figures.dump(1) + '\n');
   if (!dump.empty()) write_virtual_lights(lights_file(), picture->virtual_lights());
   if (!quiet) {

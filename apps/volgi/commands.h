@@ -17,5 +17,6 @@ void add_inspect_command(CLI::App& app, int& exit_code);
 void add_crosscheck_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
+void add_calibrate_command(CLI::App& app, int& exit_code);
 
 }  // namespace volgi::app

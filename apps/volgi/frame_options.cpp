@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/error.h"
+#include "screen/frame/choice.h"
 #include "screen/frame/registry.h"
 
 namespace volgi::app {
@@ -19,6 +21,7 @@ const std::map<std::string, screen::Backend> BACKENDS = {
 std::string recipe_help() {
   std::string text = "technique:";
   for (const screen::Recipe& r : screen::recipes()) text += fmt::format("\n  {}: {}", r.name, r.help);
+  text += "\n  auto: the one, and its parameters, that --budget asks for in this scene";
   return text + fmt::format("\n({}; with the papers' schemes volume)", screen::recipes().front().name);
 }
 
@@ -33,7 +36,15 @@ std::string parameter_help() {
 void FrameCommandOptions::add_to(CLI::App& command) {
   std::vector<std::string> names;
   for (const screen::Recipe& r : screen::recipes()) names.emplace_back(r.name);
+  names.emplace_back(AUTOMATIC);
   command.add_option("--gi", gi, recipe_help())->check(CLI::IsMember(names));
+  command
+      .add_option("--budget", budget,
+                  "of --gi auto: time a picture such as 50ms, or error such as 3% (root mean square, of the shown "
+                  "light's mean); by what "
+                  "other scenes took, on this device where volgi calibrate has measured it")
+      ->type_name("TIME|ERROR%");
+  command.add_flag("--explain", explain, "--gi auto: what was not chosen, and what it would take and show");
   command.add_option("--light", light, "light shown; direct: straight from any emitter, indirect: after a reflection")
       ->check(CLI::IsMember(LIGHTS))
       ->capture_default_str();
@@ -47,6 +58,12 @@ void FrameCommandOptions::add_to(CLI::App& command) {
       ->check(
           CLI::IsMember(std::vector<std::string>(std::begin(screen::QUALITY_NAMES), std::end(screen::QUALITY_NAMES))))
       ->capture_default_str();
+  command.add_option("--cells-times", cells_times, "cells along the volume, times those of --quality")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  command.add_option("--lights-times", lights_times, "virtual lights and clusters, times those of --quality")
+      ->check(CLI::Range(0.001, 16.0))
+      ->capture_default_str();
   volume.add_to(command);
   for (const screen::Parameter* p : screen::parameters()) {
     if (p->flag == nullptr) continue;
@@ -59,6 +76,21 @@ void FrameCommandOptions::add_to(CLI::App& command) {
   command.add_option("--set", parameters, parameter_help());
   command.add_option("--without", without, "leaves a stage of --gi out, such as visibility/negative; may be repeated")
       ->type_name("STAGE");
+}
+
+/// Says before anything is loaded what auto cannot do.
+void FrameCommandOptions::check_automatic() const {
+  if (!automatic()) {
+    if (!budget.empty() || explain)
+      throw Error(ExitCode::usage, std::string(explain ? "--explain" : "--budget") + ": goes with --gi auto");
+    return;
+  }
+  if (budget.empty()) throw Error(ExitCode::usage, "--gi auto: for what? --budget 50ms, or 3%");
+  screen::parse_budget(budget);
+  const FrameCommandOptions usual;
+  if (quality != usual.quality || cells_times != usual.cells_times || lights_times != usual.lights_times)
+    throw Error(ExitCode::usage, "--gi auto: chooses --quality, --cells-times and --lights-times itself");
+  if (light == "direct") throw Error(ExitCode::usage, "--gi auto: --light direct leaves nothing to choose");
 }
 
 screen::FrameOptions FrameCommandOptions::without_recipe(glm::ivec2 size) const {
@@ -84,7 +116,8 @@ void FrameCommandOptions::set_parameters(screen::FrameOptions& o) const {
 bool FrameCommandOptions::given() const {
   const FrameCommandOptions usual;
   return !gi.empty() || light != usual.light || backend != usual.backend || quality != usual.quality ||
-         !flagged.empty() || !parameters.empty() || !without.empty() || volume.given();
+         cells_times != usual.cells_times || lights_times != usual.lights_times || !flagged.empty() ||
+         !parameters.empty() || !without.empty() || volume.given();
 }
 
 FrameCommandOptions::Fitted FrameCommandOptions::fit(const Scene& scene, const std::optional<glm::vec3>& eye, int rung,
@@ -95,18 +128,20 @@ FrameCommandOptions::Fitted FrameCommandOptions::fit(const Scene& scene, const s
   for (const std::string& text : parameters) keep.push_back(text.substr(0, text.find('=')));
   if (volume.grid_cells) keep.emplace_back("grid");
   Fitted fitted;
-  fitted.facts = scene_facts(scene, options.of<VolumeOptions>().grid_box, volume.grid_cells);
-  fitted.needs = screen::needs_of(screen::quality_from_name(quality), rung, fitted.facts);
+  fitted.facts = facts ? *facts : scene_facts(scene, options.of<VolumeOptions>().grid_box, volume.grid_cells);
+  fitted.needs = screen::scaled(screen::needs_of(screen::quality_from_name(quality), rung, fitted.facts), cells_times,
+                                lights_times);
   fitted.chosen = screen::apply_needs(fitted.needs, keep, options);
   if (reached) warn_of_large_cells(scene, *reached, options.of<VolumeOptions>());
   return fitted;
 }
 
 std::string FrameCommandOptions::technique() const {
-  return gi.empty() ? screen::default_recipe(without_recipe(glm::ivec2(1))).name : gi;
+  return gi.empty() || automatic() ? screen::default_recipe(without_recipe(glm::ivec2(1))).name : gi;
 }
 
 screen::FrameOptions FrameCommandOptions::frame_options(glm::ivec2 size) const {
+  check_automatic();
   screen::FrameOptions o = without_recipe(size);
   screen::apply_recipe(technique(), o);
   set_parameters(o);  // once more: what was asked for goes over what the recipe prefers

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,14 +18,18 @@ namespace volgi::app {
 /// own (--vpls, --vals), --quality, and what VolumeCommandOptions takes. What there is to choose from is the
 /// registry's.
 struct FrameCommandOptions {
-  std::string gi;  // empty: the first recipe that the other options allow
+  std::string gi;      // empty: the first recipe that the other options allow; auto: apps/volgi/automatic.h chooses
+  std::string budget;  // of auto
+  bool explain = false;
   std::string light = "full";
   std::string backend = "auto";
   std::string quality = "default";
+  double cells_times = 1.0, lights_times = 1.0;  // those of the quality
   VolumeCommandOptions volume;
   std::map<std::string, std::string> flagged;  // parameters given by an option of their own
   std::vector<std::string> parameters;         // NAME=VALUE
   std::vector<std::string> without;            // stages
+  std::optional<SceneFacts> facts;             // of the scene, where fit() need not look again
 
   void add_to(CLI::App& command);
   /// @throws Error(usage) for a technique, scheme or parameter that does not exist, naming those that do.
@@ -38,12 +43,15 @@ struct FrameCommandOptions {
     std::vector<screen::Chosen> chosen;
   };
   Fitted fit(const Scene& scene, const std::optional<glm::vec3>& eye, int rung, screen::FrameOptions& options) const;
+  bool automatic() const { return gi == AUTOMATIC; }
   /// Whether anything was asked for.
   bool given() const;
   /// The technique's name, the default one's too.
   std::string technique() const;
 
  private:
+  static constexpr const char* AUTOMATIC = "auto";
+  void check_automatic() const;
   screen::FrameOptions without_recipe(glm::ivec2 size) const;
   void set_parameters(screen::FrameOptions& o) const;
 };

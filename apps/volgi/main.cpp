@@ -36,6 +36,7 @@ int run(int argc, char** argv, const app::ProgramRanks& ranks) {
   app::add_crosscheck_command(app, exit_code);
   app::add_bench_command(app, exit_code);
   app::add_report_command(app, exit_code);
+  app::add_calibrate_command(app, exit_code);
 #endif
   try {
     if (app::wrote_program_help(app, VOLGI_VERSION, argc, argv)) return exit_code;

@@ -20,9 +20,10 @@ namespace {
 constexpr double ROOM_SPREAD = 8.0;
 constexpr double MOST_LIGHTS = 16.0;     // 1024 clusters, which is as many as there may be
 constexpr double MOST_BY_DEFAULT = 4.0;  // 256 clusters, four times a frame's time
+constexpr int LEAST_CELLS = 16;
 
 int cells_times(const SceneFacts& facts, double factor) {
-  return std::clamp(int(std::lround(facts.cells * factor)), 16, VolumeOptions::kMaxDenseGridCells);
+  return std::clamp(int(std::lround(facts.cells * factor)), LEAST_CELLS, VolumeOptions::kMaxDenseGridCells);
 }
 
 bool contains(std::span<const std::string> names, const std::string& name) {
@@ -60,6 +61,12 @@ Needs needs_of(Quality quality, int rung, const SceneFacts& facts) {
   const double more = std::exp2(rung);
   return {cells_times(facts, 2.0 * std::pow(1.2, rung)), std::min(4.0 * more * lights, MOST_LIGHTS), 1.0, 0.0,
           8 << rung};
+}
+
+Needs scaled(Needs needs, double cells_times, double lights_times) {
+  needs.cells = std::clamp(int(std::lround(needs.cells * cells_times)), LEAST_CELLS, VolumeOptions::kMaxDenseGridCells);
+  needs.lights = std::min(needs.lights * lights_times, MOST_LIGHTS);
+  return needs;
 }
 
 std::vector<Chosen> apply_needs(const Needs& needs, std::span<const std::string> keep, FrameOptions& options) {

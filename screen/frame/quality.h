@@ -34,6 +34,8 @@ double lights_for(const SceneFacts& facts);
 
 /// Pure. @param rung  of Quality::truth, from 0: each asks for more of everything.
 Needs needs_of(Quality quality, int rung, const SceneFacts& facts);
+/// More or less of two of them, in what there can be of them.
+Needs scaled(Needs needs, double cells_times, double lights_times);
 
 /// A parameter that a quality has chosen, as --set or an option of its own takes it.
 struct Chosen {

@@ -86,6 +86,18 @@ TEST_F(ClaimsTest, WhatAnotherMachineHoldsIsTakenOverWhenItHasBeenSilentForLong)
   EXPECT_TRUE(claims.take("stale"));
 }
 
+// Killed between the end of a piece and giving it back, whether the others had seen it done by then or not.
+TEST_F(ClaimsTest, OfAPieceThatIsDoneADeadClaimIsClearedAway) {
+  foreign_claim("piece0", 90s);
+  foreign_claim("piece1", 10s);  // lives
+  Claims claims(folder_, 60s);
+  claims.work(
+      2, [](int k) { return "piece" + std::to_string(k); }, [](int) { return true; },
+      [](int) { ADD_FAILURE() << "it was done"; });
+  EXPECT_FALSE(fs::exists(folder_ / "piece0.claim"));
+  EXPECT_TRUE(fs::exists(folder_ / "piece1.claim"));
+}
+
 TEST_F(ClaimsTest, AHeldClaimIsRenewed) {
   Claims claims(folder_, 120ms);
   const auto claim = claims.take("a");

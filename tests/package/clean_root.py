@@ -3,8 +3,8 @@
 
 The root has nothing but the installed Debian packages that a package names, and what those name in turn: what is not named
 is not there. The archive's root is smaller still: the C and C++ runtime, EGL with a driver, and X11. In both, pictures are
-rendered with and without OpenGL, and what is taken away again leaves nothing. Then manual pages, completions, the entry for
-desktops and the list of parts. Exit code 77 (skipped) where there is no dpkg, or neither root nor user name spaces.
+rendered with and without OpenGL, an example is built against volgi-dev, and what is taken away again leaves nothing. Then
+manual pages, completions, the entry for desktops and the list of parts. Exit code 77 (skipped) where there is no dpkg, or neither root nor user name spaces.
 """
 import json
 import os
@@ -184,6 +184,35 @@ def debian(root, deb, names, needs):
     check(not list((root.folder / "var/lib/dpkg/info").glob("volgi*")), ".deb: dpkg still knows it")
 
 
+def development(root, deb, source, names, needs):
+    """A program of somebody else's is built against volgi-dev and runs. Without a compiler here it is installed only."""
+    tools = ["g++", "cmake", "ninja-build", "dash"]  # dash: essential, so that nobody names it
+    missing = [tool for tool in tools if tool not in names]
+    wanted = alternatives(must("dpkg-deb", "-f", deb, "Depends"))
+    root.add(closure(wanted + [[tool] for tool in tools if not missing], names, needs))
+    before = root.files()
+    done = root.dpkg("-i", deb)
+    check(done.returncode == 0, f"volgi-dev: dpkg -i: {done.stderr}")
+    if missing:
+        print(f"skipped: examples/minimal against volgi-dev: not installed here: {', '.join(missing)}")
+    else:
+        shutil.copytree(source / "examples/minimal", root.folder / "tmp/minimal")
+        for command in (["cmake", "-S", "/tmp/minimal", "-B", "/tmp/build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
+                         "-DCMAKE_CXX_COMPILER=/usr/bin/g++"],
+                        ["cmake", "--build", "/tmp/build"], ["/tmp/build/minimal"]):
+            done = root.inside(*command)
+            check(done.returncode == 0, f"volgi-dev: {' '.join(command)}: {done.stdout[-2000:]}{done.stderr[-2000:]}")
+        # As install_and_use.sh has it: 0.69 W/m2/sr on the floor.
+        light = re.search(r"\d+\.\d+", " ".join(done.stdout.split()[5:]))
+        check(light and 0.64 < float(light.group()) < 0.74, f"volgi-dev: minimal says {done.stdout}")
+        for made in ("minimal", "build"):
+            shutil.rmtree(root.folder / "tmp" / made, ignore_errors=True)
+    done = root.dpkg("-P", "volgi-dev")
+    check(done.returncode == 0, f"volgi-dev: dpkg -P: {done.stderr}")
+    check(root.files() == before, f"volgi-dev: leaves {sorted(root.files() ^ before)[:9]}")
+    check(not list((root.folder / "var/lib/dpkg/info").glob("volgi*")), "volgi-dev: dpkg still knows it")
+
+
 # --- what lies beside the programs ----------------------------------------------------------------------------------
 
 
@@ -264,7 +293,7 @@ def main():
         work = Path(name)
         must(cpack, "--config", binary / "CPackConfig.cmake", "-B", work / "packages", cwd=binary)
         deb, tar = next(work.glob("packages/volgi_*.deb")), next(work.glob("packages/*.tar.gz"))
-        check(next(work.glob("packages/volgi-dev_*.deb"), None) is not None, "no volgi-dev")
+        dev = next(work.glob("packages/volgi-dev_*.deb"))
         check(deb.name.split("_")[1] == version, f"{deb.name} is not of version {version}")
         names, needs = installed_packages()
         root = Root(work / "root")
@@ -272,6 +301,7 @@ def main():
             root.add(closure([[p] for p in SYSTEM], names, needs))
             archive(root, tar)
             debian(root, deb, names, needs)
+            development(root, dev, source, names, needs)
         finally:
             root.close()
         unpacked = work / "unpacked"

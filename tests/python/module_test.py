@@ -35,6 +35,7 @@ def main():
 
         # The command's picture, to the byte.
         for keywords, words in (({"gi": "none"}, ["--gi", "none"]),
+                                ({"gi": "auto", "budget": "10%"}, ["--gi", "auto", "--budget", "10%"]),
                                 ({"light": "indirect", "grid": 12, "vpls": 64, "set": {"val.map": 64}},
                                  ["--light", "indirect", "--grid", "12", "--vpls", "64", "--set", "val.map=64"])):
             picture = volgi.render(scene, **keywords)
@@ -44,6 +45,8 @@ def main():
             assert picture["color"].tobytes() == same.astype(np.float32).tobytes(), words
         assert set(picture["layers"]) == {"punctual_first", "punctual_higher"}, picture["layers"].keys()
         assert np.allclose(sum(picture["layers"].values()), picture["color"], rtol=1e-4, atol=1e-6), "layers sum to the picture"
+        chosen = volgi.render(scene, gi="auto", budget="0.001ms")["auto"]
+        assert not chosen["reached"] and chosen["chosen"][0] == "--gi", chosen
         assert "punctual_direct" in volgi.render(scene, gi="none")["layers"]
 
         # Its reference, and its figures.
