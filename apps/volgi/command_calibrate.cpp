@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <system_error>
 
@@ -50,7 +49,7 @@ int CalibrateCommand::collect() const {
   if (!fs::is_regular_file(file)) throw Error(ExitCode::bad_input, file.string() + ": not there");
   check_writable(output);
   const screen::MeasuredFront front = front_of_points(PointsFile(file).points(), data);
-  write_atomically(output, [&](const fs::path& p) { std::ofstream(p) << to_json(front).dump(1) << '\n'; });
+  write_text_atomically(output, to_json(front).dump(1) + '\n');
   if (!quiet)
     fmt::print("wrote {}: {} settings on {} scenes, {}\n", output.string(), front.settings.size(), front.scenes.size(),
                front.device);

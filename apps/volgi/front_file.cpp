@@ -183,7 +183,7 @@ void write_device_times(const fs::path& file, const DeviceTimes& times) {
         {{"scene", t.scene}, {"setting", t.setting}, {"ms", t.ms}, {"large_ms", number_or_null(t.large_ms)}});
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  write_atomically(file, [&](const fs::path& p) { std::ofstream(p) << json.dump(1) << '\n'; });
+  write_text_atomically(file, json.dump(1) + '\n');
 }
 
 std::optional<DeviceTimes> read_device_times(const fs::path& file) {
