@@ -84,7 +84,7 @@ def page_of(figures):
 
 def write(folder, device):
     found = {}
-    for file in sorted(pathlib.Path(folder).glob("*.jsonl"), key=lambda f: f.stat().st_mtime):
+    for file in sorted(pathlib.Path(folder).glob("*.jsonl"), key=lambda f: f.stat().st_mtime_ns):
         for line in file.read_text().splitlines():
             f = json.loads(line)
             key = (f["row"], f["what"], f["on"])
