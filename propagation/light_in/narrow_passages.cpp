@@ -4,144 +4,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
-#include <numeric>
 
 #include "core/visibility/diffuse_path_internal.h"
 #include "core/visibility/even_direction_internal.h"
+#include "voxel/rooms.h"
 
 namespace volgi {
 
 namespace {
 
-constexpr float OPEN_COVERAGE = 0.5f;
-constexpr int HALF_WIDTH = 4;                   // of the widest passage, in cells
 constexpr int WAY = 6;                          // cells from a passage to where paths end, at least
 constexpr size_t MOST_CELLS = size_t(1) << 23;  // 6 bytes each while it looks; gaps of large grids are many cells wide
 constexpr int NEAR = 4;                         // cells between parts of one passage, at most
-constexpr int ROUNDS = 1;
 constexpr size_t PATHS = 1 << 15, PATHS_AT_ONCE = 1 << 11;
 constexpr size_t FEWEST_PASS = 64;  // paths, for a factor to mean anything
 constexpr float LARGEST_FACTOR = 4.0f;
-
-/// By cell, x fastest, a bit for each face that lets light on into another cell.
-std::vector<unsigned char> free_faces(const VoxelGrid& voxels) {
-  constexpr unsigned all = 63;
-  const glm::ivec3 n = voxels.grid().cells;
-  std::vector<unsigned char> faces(cell_count(voxels.grid()), static_cast<unsigned char>(all));
-  for (int z = 0; z < n.z; ++z) {
-    for (int y = 0; y < n.y; ++y) {
-      unsigned char* row = &faces[size_t(shared::cell_index(voxels.grid(), {0, y, z}))];
-      const unsigned shut =
-          (y == 0 ? 4u : 0u) | (y == n.y - 1 ? 8u : 0u) | (z == 0 ? 16u : 0u) | (z == n.z - 1 ? 32u : 0u);
-      for (int x = 0; x < n.x && shut != 0; ++x) row[x] &= static_cast<unsigned char>(~shut);
-      row[0] &= static_cast<unsigned char>(~1u);
-      row[n.x - 1] &= static_cast<unsigned char>(~2u);
-    }
-  }
-  for (const shared::Side& side : voxels.sides()) {
-    if (side.coverage >= OPEN_COVERAGE) faces[size_t(side.cell)] &= static_cast<unsigned char>(~(1u << side.face));
-  }
-  return faces;
-}
-
-/// Cells that light goes between, and the rooms that they make.
-class Rooms {
- public:
-  explicit Rooms(const VoxelGrid& voxels) : free_(free_faces(voxels)) {
-    const glm::ivec3 n = voxels.grid().cells;
-    for (int face = 0; face < 6; ++face)
-      step_[face] = (face & 1 ? 1 : -1) * (face < 2 ? 1 : face < 4 ? n.x : n.x * n.y);
-    measure_distances(voxels);
-    room_of_.assign(free_.size(), NONE);
-    for (size_t i = 0; i < room_of_.size(); ++i) {
-      if (from_walls_[i] > HALF_WIDTH && room_of_[i] == NONE) find_core(int(i));
-    }
-    if (count_ > 1) grow();
-  }
-  int count() const { return count_; }
-  /// Of a cell; below 0: in none.
-  int of(int cell) const { return room_of_[size_t(cell)]; }
-  /// Steps through free faces to a cell beside a wall, and one: HALF_WIDTH + 1 at most.
-  int from_walls(int cell) const { return from_walls_[size_t(cell)]; }
-  size_t cells() const { return room_of_.size(); }
-  /// The cell beyond a free face, or -1.
-  int beyond(int cell, int face) const { return ((free_[size_t(cell)] >> face) & 1) != 0 ? cell + step_[face] : -1; }
-
- private:
-  static constexpr int NONE = -1, TOO_SMALL = -2;
-
-  template <class Visit>
-  void for_free_neighbours(int cell, const Visit& visit) const {
-    for (unsigned faces = free_[size_t(cell)]; faces != 0; faces &= faces - 1)
-      visit(cell + step_[__builtin_ctz(faces)]);
-  }
-
-  void measure_distances(const VoxelGrid& voxels) {
-    from_walls_.assign(free_.size(), HALF_WIDTH + 1);
-    std::vector<int> ring, next_ring;
-    for (const shared::Side& side : voxels.sides()) {
-      unsigned char& distance = from_walls_[size_t(side.cell)];
-      if (side.coverage < OPEN_COVERAGE || distance == 1) continue;
-      distance = 1;
-      ring.push_back(side.cell);
-    }
-    for (int d = 2; d <= HALF_WIDTH; ++d) {
-      next_ring.clear();
-      for (const int cell : ring) {
-        for_free_neighbours(cell, [&](int next) {
-          if (from_walls_[size_t(next)] <= d) return;
-          from_walls_[size_t(next)] = static_cast<unsigned char>(d);
-          next_ring.push_back(next);
-        });
-      }
-      ring.swap(next_ring);
-    }
-  }
-
-  /// What is far from all walls, one piece after the other.
-  void find_core(int first) {
-    std::vector<int> cells{first};
-    room_of_[size_t(first)] = count_;
-    for (size_t k = 0; k < cells.size(); ++k) {
-      for_free_neighbours(cells[k], [&](int next) {
-        if (from_walls_[size_t(next)] <= HALF_WIDTH || room_of_[size_t(next)] != NONE) return;
-        room_of_[size_t(next)] = count_;
-        cells.push_back(next);
-      });
-    }
-    if (cells.size() >= size_t(PASSAGE_LEAST_ROOM)) {
-      ++count_;
-    } else {
-      for (const int cell : cells) room_of_[size_t(cell)] = TOO_SMALL;
-    }
-  }
-
-  /// Wide places first: a watershed.
-  void grow() {
-    std::array<std::vector<int>, HALF_WIDTH + 2> edge;  // by distance from walls
-    for (size_t i = 0; i < room_of_.size(); ++i) {
-      if (room_of_[i] >= 0) edge[HALF_WIDTH + 1].push_back(int(i));
-    }
-    for (size_t level = edge.size(); level-- > 1;) {
-      for (size_t k = 0; k < edge[level].size(); ++k) {
-        const int cell = edge[level][k];
-        for_free_neighbours(cell, [&](int next) {
-          if (room_of_[size_t(next)] >= 0) return;
-          room_of_[size_t(next)] = room_of_[size_t(cell)];
-          edge[std::min(size_t(from_walls_[size_t(next)]), level)].push_back(next);
-        });
-      }
-    }
-  }
-
-  std::vector<unsigned char> free_;
-  std::array<int, 6> step_{};  // from a cell's number to that beyond a face
-  std::vector<unsigned char> from_walls_;
-  std::vector<int> room_of_;
-  int count_ = 0;
-};
 
 /// A free face: the cell below it, and its axis.
 using Face = std::pair<int, int>;

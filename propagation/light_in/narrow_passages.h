@@ -7,18 +7,12 @@
 
 namespace volgi {
 
-/// Faces in which passages narrower than eight cells join two rooms, by cell. Rooms are what is left of the cells after
-/// four layers before every wall are taken off, where that is PASSAGE_LEAST_ROOM cells or more; they then grow back,
-/// wide places first, and meet in the passages. Around each passage the same paths of diffuse light go from surface to
-/// surface and from side to side; the factor makes as many of them get from one room into the other
-/// (docs/theory.md#narrow-passages).
-/// Depends on the scene, not on its light. No result depends on the number of threads.
-/// Cost: some visits of every cell; where there is more than one room, 2^15 paths for each passage. Grids of more
-/// than 2^23 cells have none.
-/// No twin: the GPU's volume takes gaps as its cells show them.
+/// Faces in which passages narrower than eight cells join two rooms (voxel/rooms.h), by cell. Around each passage the
+/// same paths of diffuse light go from surface to surface and from side to side; the factor makes as many of them get
+/// from one room into the other (docs/theory.md#narrow-passages). Depends on the scene, not on its light. No result
+/// depends on the number of threads. Cost: some visits of every cell; where there is more than one room, 2^15 paths for
+/// each passage. Grids of more than 2^23 cells have none. No twin: the GPU's volume takes gaps as its cells show them.
 /// @param voxels  of the scene that `embree` holds, all of them (no part of several ranks).
 std::vector<PassageFace> narrow_passages(const VoxelGrid& voxels, const EmbreeScene& embree);
-
-constexpr int PASSAGE_LEAST_ROOM = 64;  // cells
 
 }  // namespace volgi
