@@ -98,12 +98,7 @@ PixelIrradiance gathered(const VoxelGrid& voxels, const SideIrradiance& irradian
     reader.add_seeing(seeing);
     const glm::ivec3 from = seeing.cell(seeing.nearest);
     if (!shared::cell_inside(voxels.grid(), from)) return reader.sum();  // the dark outside
-    if (reader.sum().weight == 0.0f) {
-      const Reader::Open open{from, reachable_cells(voxels, from)};
-      reader.add_around_in_turn(open);
-      // The rim of a board that is thinner than a cell, behind its front and behind its back.
-      reader.add_around(-1.0f, false, 1, open);
-    }
+    if (reader.sum().weight == 0.0f) reader.add_around_in_turn(Reader::Open{from, reachable_cells(voxels, from)});
   }
   reader.add_around_in_turn({});
   reader.add_around(-1.0f, true, 2, {});

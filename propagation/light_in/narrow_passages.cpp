@@ -19,7 +19,12 @@ constexpr size_t MOST_CELLS = size_t(1) << 23;  // 6 bytes each while it looks; 
 constexpr int NEAR = 4;                         // cells between parts of one passage, at most
 constexpr size_t PATHS = 1 << 15, PATHS_AT_ONCE = 1 << 11;
 constexpr size_t FEWEST_PASS = 64;  // paths, for a factor to mean anything
-constexpr float LARGEST_FACTOR = 4.0f;
+// What passages add must be lost elsewhere, or bounces have no end: a room gets back at most this part of what its
+// walls take; and light that goes to and fro in a gap passes it at each turn.
+constexpr double GAINED = 0.25;
+constexpr float LARGEST_FACTOR = 1.75f;
+
+float mean(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 /// A free face: the cell below it, and its axis.
 using Face = std::pair<int, int>;
@@ -203,6 +208,8 @@ class Paths {
       const glm::vec3 origin = shared::cell_from_world(grid, path.origin()), way = path.direction();
       const float out = distance_out(origin, way);
       if (!path.step() || path.hit().distance >= out * grid.cell_size_m) {
+        const glm::vec3 beyond = origin + (out + 0.01f) * way;
+        if (!shared::cell_inside(grid, glm::ivec3(glm::floor(beyond)))) return 0.0;  // out of the grid, as in cells
         const int end = room_near(origin + std::max(out - 0.01f, 0.0f) * way);
         return of_passage(end) && end != room ? weight : 0.0;
       }
@@ -249,7 +256,6 @@ class Paths {
     ++sums.passed_in_cells;
   }
 
-  static float mean(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
   static float unit_hash(std::uint32_t x) {
     x = (x ^ (x >> 16)) * 0x7feb352du;
     x = (x ^ (x >> 15)) * 0x846ca68bu;
@@ -266,15 +272,62 @@ class Paths {
 
 }  // namespace
 
+namespace {
+
+/// Of each room, what would have to be black to take as much of even light as it does [m^2]: of its sides, and of the
+/// grid's open rim.
+std::vector<double> black_area(const VoxelGrid& voxels, const Rooms& rooms) {
+  const Grid& grid = voxels.grid();
+  std::vector<double> area(size_t(rooms.count()), 0.0);
+  for (const shared::Side& side : voxels.sides()) {
+    const int room = rooms.of(side.cell);
+    if (room >= 0) area[size_t(room)] += double(side.area_m2) * (1.0 - double(mean(side.albedo)));
+  }
+  const double face_m2 = double(grid.cell_size_m) * double(grid.cell_size_m);
+  for (int cell = 0; cell < int(rooms.cells()); ++cell) {
+    if (rooms.of(cell) < 0) continue;
+    const glm::ivec3 at = shared::cell_coord(grid, cell);
+    if (glm::all(glm::greaterThan(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, grid.cells - 1))) continue;
+    const glm::uvec2 sides = voxels.cell_sides(at);
+    for (int face = 0; face < 6; ++face) {
+      const bool at_rim = !shared::cell_inside(grid, at + shared::face_step(face));
+      if (at_rim && !shared::has_side(sides, face)) area[size_t(rooms.of(cell))] += face_m2;
+    }
+  }
+  return area;
+}
+
+/// The largest factor that a passage may have, by passage.
+std::vector<float> largest_factors(const VoxelGrid& voxels, const Rooms& rooms, const std::vector<Passage>& passages) {
+  const std::vector<double> black_m2 = black_area(voxels, rooms);
+  std::vector<int> count(black_m2.size(), 0);
+  for (const Passage& p : passages) {
+    ++count[size_t(p.rooms.first)];
+    ++count[size_t(p.rooms.second)];
+  }
+  const double face_m2 = double(voxels.grid().cell_size_m) * double(voxels.grid().cell_size_m);
+  std::vector<float> largest;
+  for (const Passage& p : passages) {
+    const auto share_of = [&](int room) { return GAINED * black_m2[size_t(room)] / double(count[size_t(room)]); };
+    const double gained = std::min(share_of(p.rooms.first), share_of(p.rooms.second));
+    largest.push_back(std::min(LARGEST_FACTOR, 1.0f + float(gained / (double(p.faces.size()) * face_m2))));
+  }
+  return largest;
+}
+
+}  // namespace
+
 std::vector<PassageFace> narrow_passages(const VoxelGrid& voxels, const EmbreeScene& embree) {
   std::vector<PassageFace> all;
   if (cell_count(voxels.grid()) > MOST_CELLS) return all;
   const Rooms rooms(voxels);
   if (rooms.count() < 2) return all;
-  std::vector<Passage> passages = passages_between(voxels, rooms);
-  for (const Passage& p : passages) {
-    const float factor = Paths(voxels, embree, rooms, p).factor();
-    for (const auto& [cell, axis] : p.faces) all.push_back({shared::cell_coord(voxels.grid(), cell), axis, factor});
+  const std::vector<Passage> passages = passages_between(voxels, rooms);
+  const std::vector<float> largest = largest_factors(voxels, rooms, passages);
+  for (size_t i = 0; i < passages.size(); ++i) {
+    const float factor = std::min(Paths(voxels, embree, rooms, passages[i]).factor(), largest[i]);
+    for (const auto& [cell, axis] : passages[i].faces)
+      all.push_back({shared::cell_coord(voxels.grid(), cell), axis, factor});
   }
   std::sort(all.begin(), all.end(), [&](const PassageFace& a, const PassageFace& b) {
     return std::pair(shared::cell_index(voxels.grid(), a.cell), a.axis) <

@@ -104,8 +104,6 @@ Gathered gather_pixel(vec3 position, vec3 normal) {
     if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, from, open);
     if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, from, open);
     if (g.weight == 0.0) g = gather_around(point, normal, 0.0, false, 1, from, open);
-    // The rim of a board that is thinner than a cell, behind its front and behind its back: what light there is on them.
-    if (g.weight == 0.0) g = gather_around(point, normal, -1.0, false, 1, from, open);
   }
   if (g.weight == 0.0) g = gather_around(point, normal, 0.70710678, true, 1, ivec3(0), ANY_CELL);
   if (g.weight == 0.0) g = gather_around(point, normal, 0.0, true, 1, ivec3(0), ANY_CELL);

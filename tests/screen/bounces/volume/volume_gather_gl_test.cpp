@@ -60,48 +60,5 @@ TEST_F(VolumeGatherGl, ReadsAsTheCpuDoes) {
   }
 }
 
-/// A room with a door's leaf of 4 cm, hinged on its back wall and ajar by that angle.
-Scene ajar(float angle_rad) {
-  Scene scene;
-  const int grey = add_material(scene, glm::vec3(0.7f));
-  add_box_inside(scene, grey, glm::vec3(0.0f), {1.0f, 1.2f, 1.0f});
-  const size_t first = scene.meshes.size();
-  add_box(scene, grey, {-0.45f, 0.0f, 0.0f}, {0.45f, 1.0f, 0.02f});
-  const glm::mat3 turn(glm::rotate(glm::mat4(1.0f), angle_rad, glm::vec3(0.0f, 1.0f, 0.0f)));
-  for (size_t m = first; m < scene.meshes.size(); ++m) {
-    for (glm::vec3& p : scene.meshes[m].positions) p = turn * p + glm::vec3(0.4f, 0.0f, -0.98f);
-    for (glm::vec3& n : scene.meshes[m].normals) n = turn * n;
-  }
-  update_bounds(scene);
-  return scene;
-}
-
-// The rim beside the hinge looks a little towards the wall or away from it, and lies behind what the leaf's front's
-// sides show: where nothing near faced its way doors had edges of black dashes.
-TEST_F(VolumeGatherGl, RimsOfThinBoardsAreNotBlack) {
-  const glm::ivec2 size(128, 128);
-  screen::GBuffer gbuffer(size);
-  screen::VolumeGather on_gpu(size), on_cpu(size);
-  gl::PassTimer timer(context().software(), false);
-  for (const float angle : {0.05f, 0.164f, 0.4f}) {
-    const Scene scene = ajar(angle);
-    const Camera camera =
-        look_at_camera({0.9f, 0.3f, -0.4f}, {0.4f, 0.0f, -0.98f}, 1.2f, scene.bounds_min, scene.bounds_max);
-    gbuffer.run(gl::SceneBuffers(scene), camera, timer);
-    for (const int cells : {18, 27, 38}) {
-      const VoxelGrid voxels = voxelize_cpu(scene, make_grid(scene, cells));
-      const SideIrradiance ones{std::vector<glm::vec4>(voxels.side_count(), glm::vec4(1.0f)),
-                                std::vector<glm::vec4>(voxels.side_count(), glm::vec4(1.0f))};
-      const gl::Buffer values(ones.indirect);
-      on_gpu.run(gbuffer, camera, {upload(voxels), values, values, true}, nullptr, timer);
-      on_cpu.run_on_cpu(gbuffer, camera, voxels, ones, nullptr, timer);
-      for (const screen::VolumeGather* gather : {&on_gpu, &on_cpu}) {
-        const std::vector<float> picture = gather->indirect().download(3);
-        EXPECT_EQ(std::count(picture.begin(), picture.end(), 0.0f), 0) << angle << ' ' << cells;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace volgi::test
