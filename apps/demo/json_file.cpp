@@ -30,7 +30,7 @@ std::string not_finite(const Json& json, const std::string& place) {
   if (!json.is_structured()) return {};
   size_t index = 0;
   for (const auto& [key, member] : json.items()) {
-    const std::string found =
+    std::string found =
         not_finite(member, json.is_array() ? fmt::format("{}[{}]", place, index++) : joined(place, key));
     if (!found.empty()) return found;
   }
