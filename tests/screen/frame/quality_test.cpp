@@ -32,10 +32,24 @@ TEST(Quality, DefaultOfARoomIsWhatOptionsHave) {
   screen::apply_recipe("hybrid", options);
   const FrameOptions before = options;
   const std::vector<screen::Chosen> chosen = screen::apply_needs(needs, {}, options);
-  ASSERT_EQ(chosen.size(), 1u);
+  // Options by themselves are the least; commands take what costs a room little beside.
+  ASSERT_EQ(chosen.size(), 2u);
   EXPECT_EQ(chosen[0].name, "grid");
-  for (const screen::Parameter* p : screen::parameters())
+  EXPECT_EQ(chosen[1].name, "ordinates.sources");
+  EXPECT_EQ(chosen[1].value, "on");
+  for (const screen::Parameter* p : screen::parameters()) {
+    if (p->name == std::string("ordinates.sources")) continue;
     EXPECT_EQ(p->get(options.settings), p->get(before.settings)) << p->name;
+  }
+}
+
+TEST(Quality, HasteSparesDirectionsOfSources) {
+  FrameOptions options;
+  screen::apply_recipe("hybrid", options);
+  screen::apply_needs(screen::needs_of(Quality::fast, 0, room()), {}, options);
+  EXPECT_FALSE(options.of<VolumeOptions>().scheme.many_for_sources);
+  screen::apply_needs(screen::needs_of(Quality::fine, 0, room()), {}, options);
+  EXPECT_TRUE(options.of<VolumeOptions>().scheme.many_for_sources);
 }
 
 TEST(Quality, EachAsksForMoreThanTheOneBefore) {
