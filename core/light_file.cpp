@@ -103,7 +103,7 @@ Light light_of(const Fields& fields, const glm::dvec3& world_origin) {
 json parsed(const std::filesystem::path& path) {
   std::ifstream in(path);
   if (!in) throw Error(ExitCode::bad_input, path.string() + ": there is no such file");
-  const json root = json::parse(in, nullptr, false);
+  json root = json::parse(in, nullptr, false);
   if (root.is_discarded() || !root.is_object() || !root.contains(FORMAT) || root[FORMAT] != VERSION)
     throw Error(ExitCode::bad_input,
                 fmt::format("{}: not a file of lights (\"{}\": {})", path.string(), FORMAT, VERSION));
