@@ -44,7 +44,8 @@ MeasuredFront front_of_a_law() {
   MeasuredFront front;
   front.pixels = SMALL;
   front.large_pixels = LARGE;
-  for (size_t k = 0; k < 3; ++k) front.settings.push_back({"s" + std::to_string(k), {"--gi", "r" + std::to_string(k)}, 1});
+  for (size_t k = 0; k < 3; ++k)
+    front.settings.push_back({"s" + std::to_string(k), {"--gi", "r" + std::to_string(k)}, 1});
   front.settings.back().pictures = 4;
   int number = 0;
   for (const auto& [triangles, cells, noise] : {std::tuple{0.03, 100.0, 0.1},
