@@ -2,16 +2,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "core/hash.h"
+
 namespace volgi {
 
-/// lowbias32 (Ellis 2018): a 32-bit permutation with bias below 0.2 %.
-inline std::uint32_t hash(std::uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  return x ^ (x >> 16);
-}
 inline std::uint32_t hash(std::uint32_t a, std::uint32_t b) { return hash(hash(a) ^ (b * 0x9e3779b9u + 0x7f4a7c15u)); }
 
 /// Numbers of one path: Owen-scrambled Sobol points, taken two dimensions at a time with the order of the points

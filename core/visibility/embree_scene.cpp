@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/surface.h"
 
 namespace volgi {
@@ -23,16 +24,8 @@ constexpr double kParallel = 1 - 1e-6;  // cosine of 0.08 degrees
 
 float largest_component(glm::vec3 p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
 
-std::uint32_t mix(std::uint32_t x) {  // lowbias32, Ellis 2018
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  return x ^ (x >> 16);
-}
-
 float unit_hash(std::uint32_t seed, TriangleIndex t) {
-  return static_cast<float>(mix(mix(mix(seed) + t.mesh) ^ (t.triangle * 0x9e3779b9u)) >> 8) * 0x1p-24f;
+  return static_cast<float>(hash(hash(hash(seed) + t.mesh) ^ (t.triangle * 0x9e3779b9u)) >> 8) * 0x1p-24f;
 }
 
 struct SharedData {

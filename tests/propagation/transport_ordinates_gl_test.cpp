@@ -15,6 +15,17 @@ struct SetAndRule {
   Ordinates rule;
 };
 
+void expect_received(const Powers& received, const SweepResult& expected) {
+  double largest = 0.0, worst = 0.0;
+  for (size_t i = 0; i < received.size(); ++i) {
+    for (int band = 0; band < 3; ++band) {
+      largest = std::max(largest, expected.received[i][band]);
+      worst = std::max(worst, std::abs(double(received[i][band]) - expected.received[i][band]));
+    }
+  }
+  EXPECT_LT(worst, 2e-6 * largest);
+}
+
 class OrdinatesGl : public GlTest, public testing::WithParamInterface<SetAndRule> {
  protected:
   void SetUp() override {
@@ -110,17 +121,10 @@ TEST_P(OrdinatesGl, IsTheSweepInDouble) {
   const Powers sent = random_powers(voxels_.sides.size(), 51);
   const SweepResult expected = double_sweep(voxels_, GetParam().directions, GetParam().rule, sent);
   const Powers received = carry(sent);
-  double largest = 0.0, worst = 0.0;
-  for (size_t i = 0; i < sent.size(); ++i) {
-    for (int band = 0; band < 3; ++band) {
-      largest = std::max(largest, expected.received[i][band]);
-      worst = std::max(worst, std::abs(double(received[i][band]) - expected.received[i][band]));
-    }
-  }
-  EXPECT_LT(worst, 2e-6 * largest);
+  expect_received(received, expected);
+  double worst = 0.0, largest = 0.0;
   const auto radiance = transport_->radiance(gpu_, gl::Buffer(sent)).download();
   ASSERT_EQ(radiance.size(), 4u);
-  worst = largest = 0.0;
   for (size_t k = 0; k < 4; ++k) {
     for (size_t c = 0; c < voxels_.cells.size(); ++c) {
       for (int band = 0; band < 3; ++band) {
@@ -173,16 +177,7 @@ TEST_F(OrdinatesGlSources, HaveDirectionsOfTheirOwn) {
   for (const bool of_sources : {true, false, true}) {
     transport.carry_sources(of_sources);
     const OrdinateChoice choice = of_sources ? sources : all;
-    const SweepResult expected = double_sweep(voxels, choice.directions, choice.rule, sent);
-    const Powers received = carry(transport, gpu, sent);
-    double largest = 0.0, worst = 0.0;
-    for (size_t i = 0; i < sent.size(); ++i) {
-      for (int band = 0; band < 3; ++band) {
-        largest = std::max(largest, expected.received[i][band]);
-        worst = std::max(worst, std::abs(double(received[i][band]) - expected.received[i][band]));
-      }
-    }
-    EXPECT_LT(worst, 2e-6 * largest);
+    expect_received(carry(transport, gpu, sent), double_sweep(voxels, choice.directions, choice.rule, sent));
   }
 }
 
