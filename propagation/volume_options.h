@@ -27,6 +27,9 @@ struct VolumeOptions {
   BounceRules::Solver solver = BounceRules::Solver::automatic;
   std::optional<int>
       side_rays;  // of virtual lights, on the CPU (light_in/reflected_flux_cpu.h); none: automatic_rays()
+  /// Of sides that pixels read, a last bounce between triangles, on the CPU with `ordinates`
+  /// (light_in/final_gather_cpu.h); 0: none.
+  int gather_rays = 0;
   bool warm_start = false;
   std::optional<int> passes_per_run;
   /// What the flux that it is given stands for. lights: what lit and emissive surfaces send, and it carries all of the

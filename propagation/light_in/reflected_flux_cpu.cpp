@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <limits>
 
 #include "core/octahedral.h"
 #include "core/surface.h"
+#include "propagation/light_in/cosine_direction_internal.h"
 
 namespace volgi {
 
@@ -59,19 +59,6 @@ std::vector<Sender> senders_of(const EmbreeScene& embree, const VirtualLightsFor
   return senders;
 }
 
-/// Unit, by the cosine about the normal: a point of the unit square on the disk below the hemisphere.
-glm::vec3 cosine_direction(glm::vec3 normal, glm::vec2 uv) {
-  const glm::vec3 other = std::abs(normal.x) < 0.7f ? glm::vec3(1.0f, 0.0f, 0.0f) : glm::vec3(0.0f, 1.0f, 0.0f);
-  const glm::vec3 right = glm::normalize(glm::cross(normal, other)), up = glm::cross(normal, right);
-  const float radius = std::sqrt(uv.x), angle = glm::two_pi<float>() * uv.y;
-  return glm::normalize(radius * (std::cos(angle) * right + std::sin(angle) * up) + std::sqrt(1.0f - uv.x) * normal);
-}
-
-/// Point n of an additive recurrence in the unit square: powers of 1/1.3247..., in units of 2^-32.
-glm::vec2 recurrence(std::uint32_t n) {
-  return {float(3242174889u * n >> 8) * 0x1p-24f, float(2447445414u * n >> 8) * 0x1p-24f};
-}
-
 /// A ray of a sender, and what it has met.
 struct Carried {
   glm::vec3 way, flux;
@@ -88,8 +75,9 @@ void carry(const EmbreeScene& embree, const std::vector<Sender>& senders, int sa
     const double at = (double(j) + 0.5) / double(rays) * sums.back();
     const Sender& s = senders[size_t(std::upper_bound(sums.begin(), sums.end() - 1, at) - sums.begin())];
     const auto n = std::uint32_t(j + size_t(sample) * rays);
-    Carried c{
-        cosine_direction(s.normal, recurrence(n)), s.flux * (float(sums.back() / double(rays)) / weight_of(s)), {}};
+    Carried c{cosine_direction(s.normal, recurrence_in_square(n)),
+              s.flux * (float(sums.back() / double(rays)) / weight_of(s)),
+              {}};
     if (embree.intersect({s.origin, c.way, FAR, n, {}, {}}, c.hit)) take(j, c);
   });
 }

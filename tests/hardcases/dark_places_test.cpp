@@ -10,6 +10,7 @@
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
+#include "tests/support/turned.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
@@ -28,20 +29,6 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const glm::mat3 kStill(1.0f);
 const glm::mat3 kTilt = rotation({0, 1, 0}, 17.0f) * rotation({1, 0, 0}, 8.0f);
-
-Scene turned(Scene scene, const glm::mat3& turn) {
-  for (Mesh& mesh : scene.meshes) {
-    for (glm::vec3& p : mesh.positions) p = turn * p;
-    for (glm::vec3& n : mesh.normals) n = turn * n;
-  }
-  for (Light& light : scene.lights) {
-    light.position = turn * light.position;
-    light.direction = turn * light.direction;
-  }
-  for (Camera& camera : scene.cameras) camera.world_from_camera = glm::mat4(turn) * camera.world_from_camera;
-  update_bounds(scene);
-  return scene;
-}
 
 void look(Scene& scene, glm::vec3 eye, glm::vec3 target, float yfov_rad) {
   scene.cameras = {look_at_camera(eye, target, yfov_rad, scene.bounds_min, scene.bounds_max)};

@@ -14,6 +14,7 @@
 #include "tests/support/gl_test.h"
 #include "tests/support/invariance.h"
 #include "tests/support/paths.h"
+#include "tests/support/turned.h"
 #include "tests/support/volume_scenes.h"
 
 namespace volgi::test {
@@ -22,20 +23,6 @@ namespace {
 using screen::LightPart;
 
 std::filesystem::path file(const std::string& name) { return source_dir() / "data" / (name + ".glb"); }
-
-Scene turned(Scene scene, const glm::mat3& turn) {
-  for (Mesh& mesh : scene.meshes) {
-    for (glm::vec3& p : mesh.positions) p = turn * p;
-    for (glm::vec3& n : mesh.normals) n = turn * n;
-  }
-  for (Light& light : scene.lights) {
-    light.position = turn * light.position;
-    light.direction = turn * light.direction;
-  }
-  for (Camera& camera : scene.cameras) camera.world_from_camera = glm::mat4(turn) * camera.world_from_camera;
-  update_bounds(scene);
-  return scene;
-}
 
 /// By 90 degrees about an axis.
 Scene turned(const Scene& scene, int axis) {

@@ -3,6 +3,7 @@
 
 #include "core/gl/pass_timer.h"
 #include "core/gl/scene_buffers.h"
+#include "propagation/light_in/final_gather_cpu.h"
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_options.h"
 #include "screen/base/gbuffer.h"
@@ -19,8 +20,9 @@ struct VolumeReport {
   size_t sides = 0;
   size_t pocket_cells = 0;  // voxel/white_pockets.h
   BounceReport bounces;
-  glm::vec3 injected{0.0f};  // flux that lit and emissive surfaces send [W]
-  glm::vec3 lost{0.0f};      // and what found no side, or looks out of the grid at its rim [W]
+  FinalGatherCpu::Report gather;  // VolumeOptions::gather_rays
+  glm::vec3 injected{0.0f};       // flux that lit and emissive surfaces send [W]
+  glm::vec3 lost{0.0f};           // and what found no side, or looks out of the grid at its rim [W]
   size_t memory_bytes = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "propagation/radiance_volume_gl.h"
 #include "propagation/volume_cpu.h"
 #include "screen/bounces/volume/frame_volume.h"
+#include "screen/bounces/volume/gather_seen_sides.h"
 #include "screen/bounces/volume/radiance_gather.h"
 #include "screen/bounces/volume/volume_gather.h"
 #include "voxel/voxel_grid_gl.h"
@@ -172,6 +173,8 @@ class SidesOnCpu : public FrameVolume {
     run_stages(volume_, timer, rays_for_passages(),
                [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
     if (lead_) fetch_seen(gbuffer, timer);
+    const EmbreeScene* embree = rays_for_passages();
+    gathered_ = embree != nullptr ? seen_sides_.run(volume_, *embree, gbuffer, timer) : nullptr;
     if (!sides_on_gpu()) {
       voxels_.grid = volume_.grid();
       gather_.run_on_cpu(gbuffer, camera, sides(), irradiance(),
@@ -227,7 +230,8 @@ class SidesOnCpu : public FrameVolume {
     }
     r.memory_bytes = volume_.bytes() + fetched_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() +
                      indirect_.bytes() + punctual_flux_.bytes() + emitted_flux_.bytes() + radiance_.bytes() +
-                     gather_.bytes();
+                     gather_.bytes() + seen_sides_.bytes();
+    r.gather = seen_sides_.report();
     return r;
   }
 
@@ -261,7 +265,10 @@ class SidesOnCpu : public FrameVolume {
     return flux;
   }
   const VoxelGrid& sides() const { return lead_ ? fetched_.voxels : volume_.voxels(); }
-  const SideIrradiance& irradiance() const { return lead_ ? fetched_.irradiance : volume_.irradiance(); }
+  const SideIrradiance& irradiance() const {
+    if (gathered_ != nullptr) return *gathered_;
+    return lead_ ? fetched_.irradiance : volume_.irradiance();
+  }
   /// Waits for the G-buffer.
   void fetch_seen(const GBuffer& gbuffer, gl::PassTimer& timer) {
     const auto scope = timer.scope("screen/bounces/volume/fetch_sides");
@@ -292,6 +299,8 @@ class SidesOnCpu : public FrameVolume {
   std::optional<DirectLightCpu> direct_light_;  // of Source::lights
   std::unique_ptr<EmbreeScene> embree_;         // of Source::first_bounce
   SideSkyCpu sky_;
+  GatherSeenSides seen_sides_;
+  const SideIrradiance* gathered_ = nullptr;  // by it, in the last run
   LightsOnHost lights_;
   VoxelGridGl voxels_;
   gl::Buffer direct_, indirect_;
@@ -371,6 +380,7 @@ size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm
   } else {
     bytes += bytes_expected_cpu(scene, grid, options, expected);
   }
+  if (gathers_seen_sides(options)) bytes += FinalGatherCpu::bytes_for(grid, expected.sides, options.gather_rays);
   if (carries_sides(options.scheme.scheme) && !fits) return bytes + VolumeGather::bytes_for(size);
   if (carries_sides(options.scheme.scheme))
     return bytes + 2 * with_headroom(sizeof(glm::vec4) * expected.sides) + VolumeGather::bytes_for(size);

@@ -59,6 +59,12 @@ constexpr Parameter PARAMETERS[] = {
     number<VolumeOptions>(
         {"sides.rays", "", "that virtual lights send to the volume's sides, on the CPU", "8 a side, 65536 to 524288"},
         {1024, 1 << 28}, [](VolumeOptions& o) -> auto& { return o.side_rays; }),
+    number<VolumeOptions>(
+        {"sides.gather", "rays",
+         "of each side that pixels read: bounces once more between triangles, on the CPU with ordinates, all bounces "
+         "and "
+         "one rank; 0: none"},
+        {0, 1024}, [](VolumeOptions& o) -> auto& { return o.gather_rays; }),
     yes_no<VolumeOptions>(
         {"solver.warm", "", "starts from the last frame's answer"},
         [](VolumeOptions& o) -> auto& { return o.warm_start; }),
@@ -138,6 +144,10 @@ void add_figures(const VolumeReport& v, FrameReport& report) {
   report.add("sides", double(v.sides), words(fmt::format("{} sides", v.sides)));
   report.add("orders", double(v.bounces.orders), words(fmt::format("{} orders", v.bounces.orders)));
   report.add("iterations", double(v.bounces.passes), words(fmt::format("{} passes over the volume", v.bounces.passes)));
+  report.add("gather.sides", double(v.gather.seen_sides));
+  report.add("gather.rays", double(v.gather.rays),
+             v.gather.rays == 0 ? std::string() : fmt::format("{} sides gathered by rays", v.gather.seen_sides));
+  report.add("gather.iterations", double(v.gather.iterations));
   report.add("converged", v.bounces.converged);
   report.add("conservative_coarse", v.coarse_start);
   report.add("backend", std::string(v.on_gpu ? "gpu" : "cpu"),
@@ -249,6 +259,7 @@ std::unique_ptr<Stage> make_stage(const StageContext& context) {
 void suit(const Needs& needs, TypeMap& settings) {
   settings.of<VolumeOptions>().grid_jitter = needs.samples > 1;
   settings.of<VolumeOptions>().scheme.many_for_sources = needs.interpolation <= 1.0;  // all but what is in haste
+  settings.of<VolumeOptions>().gather_rays = needs.interpolation <= 1.0 ? FinalGatherCpu::RAYS_OF_SEEN : 0;
   settings.of<ManyDirections>().on = needs.samples > 1;
 }
 

@@ -1,0 +1,143 @@
+#include "propagation/light_in/final_gather_cpu.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "propagation/light_in/gather_steadied.h"
+#include "propagation/side_loops.h"
+
+namespace volgi {
+
+namespace {
+
+constexpr int MOST_ITERATIONS = 64;
+constexpr double SETTLED = 1e-3;  // change of an iteration over what there is, mean over surfaces
+
+int affordable_rays(size_t sides, int wanted) {
+  return std::min(wanted, int(FinalGatherCpu::MOST_RAYS / std::max(sides, size_t(1))));
+}
+
+int rays_of_all(size_t sides) { return std::max(affordable_rays(sides, FinalGatherCpu::RAYS_OF_ALL), 1); }
+
+/// Cells that are at most `reach` from one of these along an axis.
+std::vector<bool> spread(const Grid& grid, const std::vector<bool>& cells, int axis, int reach) {
+  std::vector<bool> out(cells.size(), false);
+  const int step = shared::cell_index(grid, glm::ivec3(axis == 0, axis == 1, axis == 2));
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (!cells[i]) continue;
+    const int at = shared::cell_coord(grid, int(i))[axis];
+    const int last = std::min(reach, grid.cells[axis] - 1 - at);
+    for (int d = -std::min(reach, at); d <= last; ++d) out[size_t(int(i) + d * step)] = true;
+  }
+  return out;
+}
+
+}  // namespace
+
+void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, const std::vector<bool>& seen,
+                            int rays) {
+  const size_t count = voxels.side_count();
+  const bool same =
+      count == sides_.size() && std::memcmp(sides_.data(), voxels.sides().data(), count * sizeof(shared::Side)) == 0;
+  if (same && seen == seen_ && rays == rays_of_seen_) return;
+  if (!same) {
+    sides_.assign(voxels.sides().begin(), voxels.sides().begin() + std::ptrdiff_t(count));
+    std::vector<std::uint32_t> every(count);
+    std::iota(every.begin(), every.end(), 0u);
+    all_.trace(voxels, embree, every, 0, rays_of_all(count));
+  }
+  seen_ = seen;
+  rays_of_seen_ = rays;
+  seen_sides_.clear();
+  for (size_t s = 0; s < count; ++s) {
+    if (seen[size_t(sides_[s].cell)]) seen_sides_.push_back(std::uint32_t(s));
+  }
+  const int more = affordable_rays(seen_sides_.size(), rays) - all_.rays();
+  more_.trace(voxels, embree, seen_sides_, all_.rays(), std::max(more, 0));
+}
+
+/// Of all sides, until their light is that of each other's.
+void FinalGatherCpu::iterate(const VoxelGrid& voxels, std::span<const glm::vec3> own) {
+  const std::vector<shared::Side>& sides = voxels.sides();
+  const size_t count = voxels.side_count();
+  std::vector<glm::vec3> change(count);
+  const auto radiate = [&] {
+    for_each_side(count, [&](size_t s) { radiosity_[s] = own[s] + sides[s].albedo * received_[s]; });
+  };
+  SideSums sums;
+  sums.set(voxels, nullptr);
+  const glm::dvec3 area = sums([&](size_t s) { return glm::dvec3(double(sides[s].area_m2)); });
+  radiate();
+  for (report_.iterations = 1; report_.iterations <= MOST_ITERATIONS; ++report_.iterations) {
+    for_each_side(count, [&](size_t s) {
+      Gathered g;
+      g.add(all_.row(s), radiosity_);
+      const glm::vec3 fresh = g.rays > 0 ? g.mean() : received_[s];
+      change[s] = fresh - received_[s];
+      received_[s] = fresh;
+    });
+    radiate();
+    // Dark rooms count as bright ones: their light comes last, through gaps.
+    const glm::dvec3 changed = sums([&](size_t s) {
+      return double(sides[s].area_m2) * glm::dvec3(glm::abs(change[s]) / glm::max(received_[s], 1e-30f));
+    });
+    if (glm::all(glm::lessThanEqual(changed, SETTLED * area))) break;
+  }
+}
+
+const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const EmbreeScene& embree,
+                                                  std::span<const glm::vec3> sent, const SideIrradiance& volume,
+                                                  const std::vector<bool>& seen, int rays) {
+  follow(voxels, embree, seen, rays);
+  const size_t count = voxels.side_count();
+  radiosity_.resize(count);
+  received_.resize(count);
+  const float h = voxels.grid().cell_size_m;
+  std::vector<glm::vec3> own(count);  // radiosity, but for what comes round
+  for_each_side(count, [&](size_t s) {
+    const shared::Side& side = voxels.sides()[s];
+    own[s] = sent[s] / std::max(side.area_m2, LEAST_SIDE_AREA * h * h) + side.albedo * glm::vec3(volume.direct[s]);
+    received_[s] = glm::vec3(volume.indirect[s]);
+  });
+  iterate(voxels, own);
+  std::vector<Gathered> gathered(count);
+  for_each_side(seen_sides_.size(), [&](size_t i) {
+    Gathered& g = gathered[seen_sides_[i]];
+    g.add(all_.row(seen_sides_[i]), radiosity_);
+    if (more_.rays() > 0) g.add(more_.row(i), radiosity_);
+  });
+  irradiance_ = steadied(voxels, gathered, volume.indirect);
+  report_.seen_sides = seen_sides_.size();
+  report_.rays = all_.rows() * size_t(all_.rays()) + more_.rows() * size_t(more_.rays());
+  return irradiance_;
+}
+
+size_t FinalGatherCpu::bytes() const {
+  return all_.bytes() + more_.bytes() + sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 +
+         seen_sides_.capacity() * sizeof(std::uint32_t) +
+         (radiosity_.capacity() + received_.capacity()) * sizeof(glm::vec3) +
+         irradiance_.capacity() * sizeof(glm::vec4);
+}
+
+size_t FinalGatherCpu::bytes_for(const Grid& grid, size_t sides, int rays) {
+  if (cell_count(grid) > MOST_CELLS) return 0;
+  const int all = rays_of_all(sides), more = std::max(affordable_rays(sides, rays) - all, 0);
+  const size_t a_side = sizeof(shared::Side) + sizeof(std::uint32_t) + 2 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
+  return sides * a_side + cell_count(grid) / 8 + sides * size_t(all + more) * sizeof(GatherRows::Met);
+}
+
+std::vector<bool> cells_seen(const Grid& grid, std::span<const glm::vec4> positions) {
+  constexpr int REACH = 3;  // pixels read cells beside their own, or beside those; a mean is over one more
+  std::vector<bool> cells(cell_count(grid), false);
+  const glm::vec3 last(grid.cells - 1);
+  for (const glm::vec4& p : positions) {
+    if (p.w == 0.0f) continue;
+    const glm::vec3 at = glm::clamp(shared::cell_from_world(grid, glm::vec3(p)), glm::vec3(0.0f), last);
+    cells[size_t(shared::cell_index(grid, glm::ivec3(at)))] = true;
+  }
+  for (int axis = 0; axis < 3; ++axis) cells = spread(grid, cells, axis, REACH);
+  return cells;
+}
+
+}  // namespace volgi

@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "core/visibility/embree_scene.h"
+#include "propagation/bounces_cpu.h"
+#include "propagation/light_in/gather_rows_cpu.h"
+#include "voxel/voxel_grid.h"
+
+namespace volgi {
+
+/// Bounces once more between triangles: radiosity by rays, B = B_0 + albedo E with E the mean of B over what a side's
+/// rays meet, which starts from the volume's answer. Cells are staircases where surfaces are tilted, and shut or wide
+/// open where gaps are narrow; rays are not. Few rays of every side say where light goes, since what comes round is a
+/// mean over thousands of them; more rays of those that pixels read make the picture, whose noise
+/// light_in/gather_steadied.h takes away (docs/theory.md#final-gather). No result depends on the number of threads.
+///
+/// Rays are traced once for a scene that stands still, whatever the light; of other pixels, theirs anew. Cost: some
+/// 0.5 us a ray, at most MOST_RAYS of either kind, and an iteration 3 ns for each ray of all sides. Memory: 8 bytes a
+/// ray, some 130 bytes a side.
+class FinalGatherCpu {
+ public:
+  static constexpr size_t MOST_CELLS = size_t(1) << 23;
+  static constexpr size_t MOST_RAYS = size_t(1) << 21;
+  static constexpr int RAYS_OF_ALL = 16;   // of each side, at most
+  static constexpr int RAYS_OF_SEEN = 64;  // of each that pixels read, by default
+
+  struct Report {
+    size_t seen_sides = 0, rays = 0;
+    int iterations = 0;
+  };
+
+  /// @param sent    flux A B_0 that each side sends of light that no side had before [W].
+  /// @param volume  what sides have by the volume. Its `direct` stays: what they return of it is sent, too.
+  /// @param seen    by cell: whether its sides are wanted (cells_seen()).
+  /// @param rays    of each of these.
+  /// @return in place of `volume.indirect`: of the others as it is there.
+  const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree, std::span<const glm::vec3> sent,
+                                    const SideIrradiance& volume, const std::vector<bool>& seen, int rays);
+  const Report& report() const { return report_; }
+  size_t bytes() const;
+  /// What bytes() comes to at most.
+  static size_t bytes_for(const Grid& grid, size_t sides, int rays);
+
+ private:
+  void follow(const VoxelGrid& voxels, const EmbreeScene& embree, const std::vector<bool>& seen, int rays);
+  void iterate(const VoxelGrid& voxels, std::span<const glm::vec3> own);
+
+  std::vector<shared::Side> sides_;  // that rows are of
+  std::vector<bool> seen_;
+  int rays_of_seen_ = 0;
+  std::vector<std::uint32_t> seen_sides_;
+  GatherRows all_, more_;  // more_: of seen_sides_
+  std::vector<glm::vec3> radiosity_, received_;
+  std::vector<glm::vec4> irradiance_;
+  Report report_;
+};
+
+/// Cells whose sides a picture may read at these points of surfaces (propagation/pixel_irradiance_cpu.h), and those
+/// that their means are over. @param positions  world; where w is 0 there is none.
+std::vector<bool> cells_seen(const Grid& grid, std::span<const glm::vec4> positions);
+
+}  // namespace volgi
