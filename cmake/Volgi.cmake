@@ -89,11 +89,29 @@ function(volgi_install_program program)
   install(TARGETS ${program} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endfunction()
 
-# volgi_test(NAME LABELS... SOURCES... LIBS... [FILTER googletest's]): one GoogleTest program, one ctest entry per test
-# case.
+# volgi_discover_suites(PROGRAM PREFIX PROPERTIES [FILTER googletest's]): ctest's entries for a GoogleTest program, one for
+# a suite (DiscoverSuites.cmake).
+function(volgi_discover_suites program prefix properties)
+  cmake_parse_arguments(T "" "FILTER" "" ${ARGN})
+  string(REGEX REPLACE "[^A-Za-z0-9_]" "" name ${prefix})
+  set(entries ${CMAKE_CURRENT_BINARY_DIR}/${name}_entries.cmake)
+  add_custom_command(TARGET ${program} POST_BUILD BYPRODUCTS ${entries}
+    COMMAND ${CMAKE_COMMAND} -DPROGRAM=$<TARGET_FILE:${program}> -DPREFIX=${prefix} "-DFILTER=${T_FILTER}" -DMOST=12
+      "-DPROPERTIES=${properties}" -DFOLDER=${CMAKE_CURRENT_BINARY_DIR} -DOUT=${entries}
+      -P ${PROJECT_SOURCE_DIR}/cmake/DiscoverSuites.cmake
+    VERBATIM)
+  set(wrapper ${CMAKE_CURRENT_BINARY_DIR}/${name}_include.cmake)
+  file(WRITE ${wrapper} "if(EXISTS [=[${entries}]=])\n  include([=[${entries}]=])\nelse()\n  add_test(${name}_NOT_BUILT ${name}_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${wrapper})
+endfunction()
+
+# volgi_test(NAME LABELS... SOURCES... LIBS... [FILTER googletest's] [SUITES]): one GoogleTest program; one ctest entry per
+# test case, or with SUITES per suite.
 function(volgi_test name)
-  cmake_parse_arguments(T "" "TIMEOUT;FILTER" "LABELS;SOURCES;LIBS" ${ARGN})
-  if(NOT T_TIMEOUT)
+  cmake_parse_arguments(T "SUITES" "TIMEOUT;FILTER" "LABELS;SOURCES;LIBS" ${ARGN})
+  if(NOT T_TIMEOUT AND T_SUITES)
+    set(T_TIMEOUT 900)
+  elseif(NOT T_TIMEOUT)
     set(T_TIMEOUT 300)
   endif()
   add_executable(test_${name} ${T_SOURCES})
@@ -104,6 +122,10 @@ function(volgi_test name)
   if(NOT T_LABELS)
     set(T_LABELS cpu)
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${T_FILTER}" DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${T_LABELS}" TIMEOUT ${T_TIMEOUT})
+  if(T_SUITES)
+    volgi_discover_suites(test_${name} ${name}. "LABELS ${T_LABELS} TIMEOUT ${T_TIMEOUT}" FILTER "${T_FILTER}")
+  else()
+    gtest_discover_tests(test_${name} TEST_PREFIX "${name}." TEST_FILTER "${T_FILTER}" DISCOVERY_TIMEOUT 60
+      PROPERTIES LABELS "${T_LABELS}" TIMEOUT ${T_TIMEOUT})
+  endif()
 endfunction()

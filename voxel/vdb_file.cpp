@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMagic = 0x56444220;  // OPENVDB_MAGIC
 constexpr std::streamoff kUuidAt = 21;
 constexpr std::streamoff kUuidLength = 36;
+// A list of sizes, of any length.
+constexpr const char* DELAYED_LOAD = "__delayedload";
 // First format whose grids say their own compression (2013).
 constexpr std::uint32_t kOldestKnownFormat = 222;
 
@@ -159,8 +161,33 @@ class Reader : public openvdb::io::Archive {
     stream_.seekg(start);
   }
   void check_metadata() {
-    for (auto left = get<std::uint32_t>(); left > 0; --left)
-      for (int text = 0; text < 3; ++text) skip_text();  // name, type, value
+    for (auto left = get<std::uint32_t>(); left > 0; --left) {
+      skip_text();  // name
+      const std::string type = read_text();
+      const auto start = position();
+      check_value(type, get<std::uint32_t>());
+      stream_.seekg(start);
+      skip_text();
+    }
+  }
+  /// Of values of one size OpenVDB reads as many bytes as their type has, whatever length the file gives, and takes
+  /// what follows for the next one: a length that nobody has looked at.
+  static void check_value(const std::string& type, std::uint32_t length) {
+    if (type == openvdb::StringMetadata::staticTypeName() || type == DELAYED_LOAD ||
+        !openvdb::Metadata::isRegisteredType(type))
+      return;
+    if (length != openvdb::Metadata::createMetadata(type)->size())
+      throw std::runtime_error("a value in it is not as long as its type");
+  }
+  std::string read_text() {
+    const auto start = position();
+    const auto length = get<std::uint32_t>();
+    stream_.seekg(start);
+    skip_text();  // within the file
+    std::string text(length, '\0');
+    stream_.seekg(start + std::streamoff(sizeof length));
+    stream_.read(text.data(), std::streamsize(length));
+    return text;
   }
   void skip_text() {
     const auto length = get<std::uint32_t>();

@@ -265,7 +265,7 @@ void read_picture(JsonObject& object, Settings& s) {
 
 void read_bookmarks(JsonObject& scene, const Json& json, std::vector<Bookmark>& bookmarks, Reader& reader) {
   for (const auto& [name, pose] : json.items()) {
-    const auto read = [&](JsonObject& object) { bookmarks.push_back({name, read_pose(object)}); };
+    const auto read = [&, &of = name](JsonObject& object) { bookmarks.push_back({of, read_pose(object)}); };
     reader.object(scene, name, read);
   }
 }

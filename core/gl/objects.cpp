@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/gl/context.h"
 #include "core/gl/limits.h"
+#include "core/gl/storage.h"
 
 namespace volgi::gl {
 
@@ -142,6 +143,7 @@ void Buffer::download(void* data, size_t bytes, size_t offset) const {
 
 Texture Texture::make_2d(GLenum format, int width, int height, int levels) {
   check_texture_size({width, height, 1}, GL_MAX_TEXTURE_SIZE, GL_NONE);
+  format = stored_format(format);
   Texture t(GL_TEXTURE_2D, format, {width, height, 1});
   glTextureStorage2D(t.id(), levels, format, width, height);
   t.finish();
@@ -150,6 +152,7 @@ Texture Texture::make_2d(GLenum format, int width, int height, int levels) {
 
 Texture Texture::make_2d_array(GLenum format, int width, int height, int layers, int levels) {
   check_texture_size({width, height, layers}, GL_MAX_TEXTURE_SIZE, GL_MAX_ARRAY_TEXTURE_LAYERS);
+  format = stored_format(format);
   Texture t(GL_TEXTURE_2D_ARRAY, format, {width, height, layers});
   glTextureStorage3D(t.id(), levels, format, width, height, layers);
   t.finish();
@@ -158,6 +161,7 @@ Texture Texture::make_2d_array(GLenum format, int width, int height, int layers,
 
 Texture Texture::make_3d(GLenum format, glm::ivec3 size) {
   check_texture_size(size, GL_MAX_3D_TEXTURE_SIZE, GL_MAX_3D_TEXTURE_SIZE);
+  format = stored_format(format);
   Texture t(GL_TEXTURE_3D, format, size);
   glTextureStorage3D(t.id(), 1, format, size.x, size.y, size.z);
   t.finish();

@@ -12,6 +12,7 @@
 #include "core/gl/limits.h"
 #include "core/gl/program_pool_internal.h"
 #include "core/gl/shader_source.h"
+#include "core/gl/storage.h"
 #include "shaders/shared/global_index.shared.h"
 
 namespace volgi::gl {
@@ -36,7 +37,7 @@ std::string info_log(GLuint id, GetParameter get_parameter, GetLog get_log) {
 }
 
 std::string define_lines(const std::vector<std::string>& defines) {
-  std::string text;
+  std::string text = wide_storage() ? "#define WIDE_STORAGE\n" : "";
   for (const std::string& define : defines) text += "#define " + define + '\n';
   return text;
 }

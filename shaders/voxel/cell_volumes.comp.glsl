@@ -1,12 +1,13 @@
 #version 450 core
 // Turns the sums of each cell into what is kept of it.
 #include "shared/group_sizes.shared.h"
+#include "shared/storage.glsl"
 #include "voxel/cell_sums.glsl"
 #include "voxel/grid_block.glsl"
 
 layout(local_size_x = CELL_GROUP_X, local_size_y = CELL_GROUP_Y, local_size_z = CELL_GROUP_Z) in;
-layout(rgba16f, binding = NORMAL_OCCUPANCY_IMAGE) writeonly uniform image3D normal_occupancy;
-layout(rgba16f, binding = CELL_ALBEDO_IMAGE) writeonly uniform image3D albedo;
+layout(STORED_RGBA16F, binding = NORMAL_OCCUPANCY_IMAGE) writeonly uniform image3D normal_occupancy;
+layout(STORED_RGBA16F, binding = CELL_ALBEDO_IMAGE) writeonly uniform image3D albedo;
 layout(rgba32f, binding = CELL_EMISSION_IMAGE) writeonly uniform image3D emission;
 
 void main() {

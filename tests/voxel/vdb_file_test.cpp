@@ -260,6 +260,22 @@ TEST_F(VdbFileTest, TextsLongerThanTheFileAreNotMade) {
   expect_refused(path(), "a text of 4 GiB");
 }
 
+// OpenVDB would read 16 bytes of a value of 12, and take what follows for lengths.
+TEST_F(VdbFileTest, ValuesAreAsLongAsTheirTypes) {
+  std::string bytes = foreign(few_bytes(path()));
+  const size_t type = bytes.find("vec3i");
+  ASSERT_NE(type, std::string::npos);
+  bytes.replace(type, 5, "vec4i");
+  write_bytes(path(), bytes);
+  try {
+    read_vdb(path());
+    ADD_FAILURE() << "it is read";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::bad_input);
+    EXPECT_NE(std::string(e.what()).find("not as long as its type"), std::string::npos) << e.what();
+  }
+}
+
 TEST_F(VdbFileTest, SaysWhenItCannotWrite) {
   const fs::path targets[] = {folder_ / "none" / "grids.vdb", folder_};
   for (const fs::path& target : targets) {

@@ -28,7 +28,7 @@ ConvolutionShadow::ConvolutionShadow(int resolution, int layers, Filter filter, 
       range_program_(gl::Program::compute("screen/visibility/area_maps/convolution_shadow_range.comp.glsl")),
       basis_program_(
           gl::Program::compute("screen/visibility/area_maps/convolution_shadow.comp.glsl",
-                               {format == BasisFormat::rgba8 ? "BASIS_FORMAT rgba8" : "BASIS_FORMAT rgba16"})) {}
+                               {format == BasisFormat::rgba8 ? "BASIS_FORMAT rgba8" : "BASIS_FORMAT STORED_RGBA16"})) {}
 
 void ConvolutionShadow::run(const ParaboloidDepthMaps& maps, gl::PassTimer& timer) {
   const auto scope = timer.scope(name);

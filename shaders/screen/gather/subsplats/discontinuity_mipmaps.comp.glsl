@@ -7,11 +7,12 @@
 #include "screen/gather/subsplats/subsplat.shared.h"
 #include "shared/group_sizes.shared.h"
 #include "shared/octahedral.glsl"
+#include "shared/storage.glsl"
 
 layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 layout(binding = DEPTH_RANGES_IMAGE, rg32f) uniform image2D depth_ranges;            // [m], nearest and farthest
-layout(binding = LEAST_NORMALS_IMAGE, rgba16_snorm) uniform image2D least_normals;   // of each component
-layout(binding = MOST_NORMALS_IMAGE, rgba16_snorm) uniform image2D most_normals;
+layout(binding = LEAST_NORMALS_IMAGE, STORED_RGBA16_SNORM) uniform image2D least_normals;   // of each component
+layout(binding = MOST_NORMALS_IMAGE, STORED_RGBA16_SNORM) uniform image2D most_normals;
 layout(binding = BENDS_IMAGE, rg32f) uniform image2D bends;                          // largest derivative, curvature
 layout(binding = DISCONTINUITIES_IMAGE, r8ui) uniform uimage2D discontinuities;      // SUBSPLAT_*
 uniform ivec2 picture_size;

@@ -4,6 +4,7 @@
 #include "screen/visibility/area_maps/convolution_basis.glsl"
 #include "screen/visibility/area_maps/slots.shared.h"
 #include "shared/group_sizes.shared.h"
+#include "shared/storage.glsl"
 
 layout(local_size_x = SQUARE_GROUP, local_size_y = SQUARE_GROUP) in;
 layout(binding = DISTANCE_MAP_UNIT) uniform sampler2DArray distance_map;
@@ -12,7 +13,7 @@ layout(binding = FARTHEST_UNIT) uniform sampler2D farthest;
 #define BASIS_FORMAT rgba8
 #endif
 layout(binding = BASIS_IMAGE, BASIS_FORMAT) writeonly uniform image2DArray basis;  // 1/2 + 1/2 cos or sin
-layout(binding = BASIS_DEPTH_IMAGE, rgba16) writeonly uniform image2DArray basis_depth;
+layout(binding = BASIS_DEPTH_IMAGE, STORED_RGBA16) writeonly uniform image2DArray basis_depth;
 layout(binding = BASIS_MEAN_IMAGE, r32f) writeonly uniform image2DArray depth;
 
 void main() {
