@@ -81,12 +81,12 @@ void check(const CascadeOptions& options, const Grid& outermost) {
   if (options.ratio != 2 && options.ratio != 4)
     throw Error(ExitCode::usage, "--cascade-ratio: cells are twice or four times as coarse, 2 or 4");
   const double longest = std::max({outermost.cells.x, outermost.cells.y, outermost.cells.z});
-  const double finest = longest * std::pow(options.ratio, options.count() - 1);
+  const double finest = longest * std::pow(options.ratio, options.levels - 1);
   if (finest > kMostFinestCells)
     throw Error(ExitCode::over_limit,
                 fmt::format("{} cascades, each {} times as coarse: the scene is {:.0f} of the finest cells long, {} are "
                             "told apart; fewer --cascades or a smaller --grid",
-                            options.count(), options.ratio, finest, kMostFinestCells));
+                            options.levels, options.ratio, finest, kMostFinestCells));
 }
 
 }  // namespace
@@ -106,18 +106,19 @@ glm::ivec3 Cascade::finest_cells() const {
 }
 
 Cascade make_cascade(const Grid& outermost, const CascadeOptions& options) {
-  if (options.count() < 1) throw Error(ExitCode::usage, "--cascades needs at least 1 grid");
+  if (options.levels < 1 || options.levels > CascadeOptions::kMostLevels)
+    throw Error(ExitCode::usage, fmt::format("--cascades: 1 to {} grids", CascadeOptions::kMostLevels));
   const Grid outer = options.nested() ? of_whole_blocks(outermost) : outermost;
   Cascade c{options.ratio, {outer}, {BlockBox{}}};
   if (!options.nested()) return c;
   check(options, outer);
   const Lattice lattice(outer, options.ratio);
-  const int inner = options.count() - 1;
+  const int inner = options.levels - 1;
   std::vector<BlockBox> boxes(size_t(inner) + 1);  // by level, blocks of the level around
   for (int level = inner; level >= 1; --level) {
     BlockBox& box = boxes[size_t(level)];
-    box = options.box ? around_box(lattice, (*options.box)[size_t(level) - 1], level)
-                      : around_point(lattice, options.around, level, options.ratio);
+    box = options.by_boxes ? around_box(lattice, options.boxes[size_t(level) - 1], level)
+                           : around_point(lattice, options.around, level, options.ratio);
     if (level < inner) make_room(box, boxes[size_t(level) + 1], options.ratio, lattice.blocks(level - 1));
   }
   glm::ivec3 first(0);  // block of the level around, on the whole lattice

@@ -1,6 +1,6 @@
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
-#include <optional>
 #include <vector>
 
 #include "voxel/grid.h"
@@ -8,15 +8,16 @@
 
 namespace volgi {
 
-/// What nested grids there are to be.
+/// What nested grids there are to be. Trivially copyable, as all of VolumeOptions.
 struct CascadeOptions {
-  int levels = 1;                           // grids, the outermost among them; 1: it alone
-  int ratio = 2;                            // 2 or 4: edge of a grid's cells over that of the next one inside
-  glm::vec3 around{0.0f};                   // where the inner ones lie [m], in the scene's centred frame
-  std::optional<std::vector<GridBox>> box;  // where instead, from the outermost of the inner ones; levels follow
+  static constexpr int kMostLevels = 8;
+  int levels = 1;           // grids, the outermost among them; 1: it alone
+  int ratio = 2;            // 2 or 4: edge of a grid's cells over that of the next one inside
+  glm::vec3 around{0.0f};   // where the inner ones lie [m], in the scene's centred frame
+  bool by_boxes = false;    // they lie there instead, from the outermost of the inner ones:
+  std::array<GridBox, kMostLevels - 1> boxes{};
 
-  int count() const { return box ? 1 + int(box->size()) : levels; }
-  bool nested() const { return count() > 1; }
+  bool nested() const { return levels > 1; }
 };
 
 /// Nested grids (Kaplanyan and Dachsbacher 2010, section 4.4, "cascaded light propagation volumes"): the outermost
@@ -39,7 +40,7 @@ struct Cascade {
 
 /// @param outermost  its cells are made up to whole blocks where there are several levels; alone it stays as it is.
 ///   Inner grids have as many cells along each axis as the outermost along its longest, but none beyond it.
-/// @throws Error(usage) for a ratio that is neither 2 nor 4, fewer levels than one, and a box that is not in the
+/// @throws Error(usage) for a ratio that is neither 2 nor 4, levels that are not 1 to kMostLevels, and a box that is not in the
 ///   outermost grid; Error(over_limit) where the scene is longer than kMostFinestCells of the innermost cells.
 Cascade make_cascade(const Grid& outermost, const CascadeOptions& options);
 

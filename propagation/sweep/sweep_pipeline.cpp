@@ -256,9 +256,13 @@ size_t SweepPipeline::octant_bytes(const RanksOfVolume* ranks, const BlockBox& p
   return bytes;
 }
 
-size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once) {
   const size_t bytes = octant_bytes(ranks, part, face_floats);
-  return size_t(slots_of(ranks, bytes, AtOnce())) * bytes;
+  return size_t(slots_of(ranks, bytes, at_once)) * bytes;
+}
+
+int SweepPipeline::octants_at_once(const BlockBox& part, size_t face_floats, AtOnce at_once) {
+  return slots_of(nullptr, octant_bytes(nullptr, part, face_floats), at_once);
 }
 
 size_t SweepPipeline::bytes() const {

@@ -74,7 +74,12 @@ class SweepPipeline {
   void end();
 
   size_t bytes() const;
-  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats);
+  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once);
+  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+    return bytes_for(ranks, part, face_floats, AtOnce());
+  }
+  /// What octants_at_once() will be of one rank.
+  static int octants_at_once(const BlockBox& part, size_t face_floats, AtOnce at_once);
   /// Of all sweeps so far.
   struct Traffic {
     size_t messages = 0, bytes = 0;

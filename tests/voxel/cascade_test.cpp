@@ -99,8 +99,10 @@ TEST(Cascade, MovesByWholeBlocksOfTheGridAround) {
 }
 
 TEST(Cascade, BoxesAreMadeUpToWholeBlocksAndMakeRoomForThoseInside) {
-  CascadeOptions options;
-  options.box = {{{{0.0f, 0.0f, 0.0f}, {1.0f, 1.0f, 1.0f}}, {{-7.0f, -7.0f, -7.0f}, {8.0f, 7.0f, 7.0f}}}};
+  CascadeOptions options = nested(3, 2);
+  options.by_boxes = true;
+  options.boxes[0] = {{0.0f, 0.0f, 0.0f}, {1.0f, 1.0f, 1.0f}};
+  options.boxes[1] = {{-7.0f, -7.0f, -7.0f}, {8.0f, 7.0f, 7.0f}};
   const Cascade c = make_cascade(outermost({64, 64, 64}), options);
   ASSERT_EQ(c.levels(), 3u);
   expect_nested(c);
@@ -112,8 +114,9 @@ TEST(Cascade, BoxesAreMadeUpToWholeBlocksAndMakeRoomForThoseInside) {
 TEST(Cascade, WhatCannotBeIsAnError) {
   EXPECT_THROW(make_cascade(outermost({64, 64, 64}), nested(2, 3)), Error);
   EXPECT_THROW(make_cascade(outermost({64, 64, 64}), nested(0, 2)), Error);
-  CascadeOptions outside;
-  outside.box = {{{{100.0f, 0.0f, 0.0f}, {101.0f, 1.0f, 1.0f}}}};
+  CascadeOptions outside = nested(2, 2);
+  outside.by_boxes = true;
+  outside.boxes[0] = {{100.0f, 0.0f, 0.0f}, {101.0f, 1.0f, 1.0f}};
   EXPECT_THROW(make_cascade(outermost({64, 64, 64}), outside), Error);
   try {
     make_cascade(outermost({512, 64, 64}), nested(3, 2));
