@@ -43,8 +43,8 @@ void BouncesCpu::make_room(const Run& run) {
   });
 }
 
-BounceReport BouncesCpu::run(const VolumeSides& sides, const SideFlux& flux, bool has_emission, const BounceRules& rules,
-                             const Sky* sky) {
+BounceReport BouncesCpu::run(const VolumeSides& sides, const SideFlux& flux, bool has_emission,
+                             const BounceRules& rules, const Sky* sky) {
   rules.check(transport_->linear());
   has_emission = has_emission || sky != nullptr;
   const Run run{sides, flux, has_emission, rules, sky};

@@ -18,10 +18,10 @@ namespace volgi {
 /// Conjugate gradients: with K from sent to received power, f the returned fraction and e what the sources send, the
 /// power P that sides receive solves P = K(e + fP). S = K/tau of the receiving side is symmetric, so I - fK is
 /// self-adjoint and positive in the product <a,b> = sum of a b / (f tau) over what sides send, and is solved there; in
-/// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (docs/theory.md#orders). Where faces are of several sizes
-/// (a cascade's), tau is times their area. Every step's K d is added
-/// up into P, which makes P = K(e + v) of the sought v = fP: one plain bounce from v, also where f = 0, at no cost. The
-/// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
+/// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (docs/theory.md#orders). Where faces are of several
+/// sizes (a cascade's), tau is times their area. Every step's K d is added up into P, which makes P = K(e + v) of the
+/// sought v = fP: one plain bounce from v, also where f = 0, at no cost. The residual q = fP - v is what that bounce
+/// changes of what sides send, so orders_ended() speaks of both solvers alike.
 class BouncesCpu {
  public:
   /// @param ranks  that the voxels are parts of (the transport's); null: there is one.

@@ -112,8 +112,8 @@ float from_rim(const VolumeSides& sides, size_t level, glm::vec3 place) {
   const glm::vec3 low = shared::cell_from_world(grid, place), high = glm::vec3(grid.cells) - low;
   // Where the outermost grid begins and ends, in the same cells.
   const glm::vec3 first = shared::cell_from_world(grid, outermost.origin);
-  const glm::vec3 last = first + glm::vec3(sides.finest_grid().cells) *
-                                     (sides.finest_grid().cell_size_m / grid.cell_size_m);
+  const glm::vec3 last =
+      first + glm::vec3(sides.finest_grid().cells) * (sides.finest_grid().cell_size_m / grid.cell_size_m);
   float least = 1e3f;
   for (int axis = 0; axis < 3; ++axis) {
     if (first[axis] < -0.5f) least = std::min(least, low[axis]);
@@ -126,7 +126,8 @@ float from_rim(const VolumeSides& sides, size_t level, glm::vec3 place) {
 
 PixelIrradiance irradiance_at_pixel(const VolumeSides& sides, std::span<const SideIrradiance> irradiance,
                                     glm::vec3 position, glm::vec3 normal, glm::vec4 viewer) {
-  constexpr float FIRST = 0.25f, LAST = 1.0f;  // cells before the rim; beyond half a cell of the level around it has none
+  constexpr float FIRST = 0.25f,
+                  LAST = 1.0f;  // cells before the rim; beyond half a cell of the level around it has none
   const size_t level = sides.level_of(position, normal);
   const auto of_level = [&](size_t l) {
     return irradiance_at_pixel(sides.level(l), irradiance[l], position, normal, viewer);

@@ -243,7 +243,7 @@ OrdinatesTransportCpu::OrdinatesTransportCpu(const VolumeSides& sides, const Cas
       cascade_(cascade),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
       all_(make_angles(choice, voxels_.grid().cell_size_m)),
-      pipeline_(ranks, voxels_.part(), face_floats(), beside_inner_grids(cascade, face_floats(), at_once)) {
+      pipeline_(ranks, voxels_.part(), face_floats(), with_inner_grids(cascade, face_floats(), at_once)) {
   if (sources) sources_ = make_angles(*sources, voxels_.grid().cell_size_m);
   assert(!sources_ || sources_->batches[0].octets == all_.batches[0].octets);
   if (cascade != nullptr) nested_.emplace(*cascade, levels, face_floats(), pipeline_.octants_at_once());
@@ -258,14 +258,17 @@ OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateCh
 OrdinatesTransportCpu::OrdinatesTransportCpu(const Cascade& cascade, std::span<const VoxelGrid> levels,
                                              OrdinateChoice choice, std::optional<OrdinateChoice> sources,
                                              SweepPipeline::AtOnce at_once)
-    : OrdinatesTransportCpu(VolumeSides(cascade, levels), &cascade, levels, choice, nullptr, nullptr, at_once, sources) {}
+    : OrdinatesTransportCpu(VolumeSides(cascade, levels), &cascade, levels, choice, nullptr, nullptr, at_once,
+                            sources) {}
 
-/// What is left for the outermost grid's light where eight octants' ways through the inner ones are taken off.
-SweepPipeline::AtOnce OrdinatesTransportCpu::beside_inner_grids(const Cascade* cascade, size_t face_floats,
-                                                                SweepPipeline::AtOnce at_once) {
-  if (cascade == nullptr) return at_once;
-  const size_t inner = 8 * NestedFaces::bytes_for(*cascade, face_floats);
-  at_once.many_flows -= std::min(inner, at_once.many_flows);
+/// A cascade is there to take little memory; the outermost grid has few blocks, so threads have octants each.
+SweepPipeline::AtOnce OrdinatesTransportCpu::with_inner_grids(const Cascade* cascade, size_t face_floats,
+                                                              SweepPipeline::AtOnce at_once) {
+  if (cascade == nullptr || at_once.of_one > 0) return at_once;
+  const BlockBox outermost{glm::ivec3(0), leaf_blocks(cascade->grids.front())};
+  const size_t of_octant = NestedFaces::bytes_for(*cascade, face_floats) +
+                           SweepPipeline::bytes_for(nullptr, outermost, face_floats, {.of_one = 1});
+  at_once.of_one = 8 * of_octant > SweepPipeline::kManyFlowsOfRank ? 2 : 8;
   return at_once;
 }
 
@@ -488,13 +491,13 @@ void OrdinatesTransportCpu::sweep_turn(int octant, const Turn& turn, RadianceLea
   }
   if (leaves != nullptr) leaves->attach(b, turn.block);
   kernels_.kernel(angles().choice.rule == Ordinates::characteristic, constants().octets, leaves != nullptr)(constants(),
-                                                                                                           b);
+                                                                                                            b);
   for (const NestedFaces::Face& f : turn.faces) *f.lit = any_light(f.values, face) ? 1 : 0;
 }
 
 /// The blocks of the next level that have taken a block's place, upwind ones first.
 void OrdinatesTransportCpu::sweep_inside(int octant, const Turn& turn) {
-  const int slot = slot_of(octant), ratio = cascade_->ratio, octets = constants().octets;
+  const int slot = pipeline_.slot(octant), ratio = cascade_->ratio, octets = constants().octets;
   const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
   const glm::ivec3 first = nested_->first_inside(turn.level, turn.block);
   nested_->enter(kernels_, octets, slot, octant, turn.level, turn.block, turn.faces);
@@ -519,7 +522,7 @@ size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice,
 size_t OrdinatesTransportCpu::bytes_for(const Cascade& cascade, OrdinateChoice choice, const ExpectedSides& expected) {
   const size_t face = face_floats(octets_of(std::min(choice.directions / 8, int(kBatch))));
   const BlockBox all{glm::ivec3(0), leaf_blocks(cascade.grids[0])};
-  const SweepPipeline::AtOnce at_once = beside_inner_grids(&cascade, face, {});
+  const SweepPipeline::AtOnce at_once = with_inner_grids(&cascade, face, {});
   const auto octants = size_t(SweepPipeline::octants_at_once(all, face, at_once));
   size_t blocks = 0;
   for (const Grid& grid : cascade.grids) blocks += BlockBox{glm::ivec3(0), leaf_blocks(grid)}.count();

@@ -30,7 +30,9 @@ namespace volgi {
 ///
 /// Of a cascade the same sweep goes through all grids at once: where a block's place has been taken by the next grid,
 /// that grid's blocks there follow, and light passes the rim with its power kept (sweep/nested_faces.h). Faces are then
-/// of several sizes: reciprocal is K over the receiving side's coverage and the area of its face.
+/// of several sizes: reciprocal is K over the receiving side's coverage and the area of its face. Memory is three
+/// planes of each inner grid more an octant, of which two are under way where eight would take more than
+/// kManyFlowsOfRank.
 class OrdinatesTransportCpu : public TransportCpu {
  public:
   /// @param kernels  null: the fastest that this machine can run.
@@ -93,9 +95,8 @@ class OrdinatesTransportCpu : public TransportCpu {
   void pack_sides(std::span<const PassageFace> passages);
   void sweep_turn(int octant, const Turn& turn, RadianceLeaves* leaves);
   void sweep_inside(int octant, const Turn& turn);
-  int slot_of(int octant) const { return pipeline_.octants_at_once() == 8 ? octant : 0; }
-  static SweepPipeline::AtOnce beside_inner_grids(const Cascade* cascade, size_t face_floats,
-                                                  SweepPipeline::AtOnce at_once);
+  static SweepPipeline::AtOnce with_inner_grids(const Cascade* cascade, size_t face_floats,
+                                                SweepPipeline::AtOnce at_once);
   void make_inflow(const Sky& sky, Angles& angles) const;
   void fill_rim(SweepPipeline::Task task, int axis);
   void sweep(bool in_order, RadianceLeaves* leaves);
@@ -124,7 +125,7 @@ class OrdinatesTransportCpu : public TransportCpu {
   // Faces of passages are packed as sides, too, that send nothing and keep nothing: kNoSide.
   std::vector<sweep::BlockSides> block_sides_;
   std::vector<std::vector<int>> sides_of_block_;  // by level, of the part: index into block_sides_, or -1
-  std::vector<unsigned char> sends_;  // by block_sides_: whether any side of the block sends
+  std::vector<unsigned char> sends_;              // by block_sides_: whether any side of the block sends
   std::vector<std::uint32_t> side_;
   std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> sent_;     // w: 1 - tau
   std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> arrived_;  // 4 a side, zero between sweeps

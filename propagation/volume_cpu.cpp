@@ -166,10 +166,10 @@ VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ran
   if (options.scheme.scheme == Scheme::ordinates)
     ordinate_set(choose_ordinates(cascade_.finest_cells(), options.scheme).directions);
   if (options.memory_limit)
-    refuse_above_limit(options,
-                       ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
-                              : bytes_expected_cpu(scene, cascade_, options),
-                       "CPU");
+    refuse_above_limit(
+        options,
+        ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_) : bytes_expected_cpu(scene, cascade_, options),
+        "CPU");
 }
 
 void VolumeCpu::set_grid() {

@@ -91,7 +91,7 @@ class VolumeCpu {
   BounceRules rules_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
   std::optional<RanksOfVolume> ranks_, half_ranks_;
-  std::optional<SideHalo> halo_;         // of voxels()
+  std::optional<SideHalo> halo_;                               // of voxels()
   std::vector<VoxelGrid> levels_ = std::vector<VoxelGrid>(1);  // of the cascade
   VoxelGrid half_voxels_;
   CellVolumes cells_;

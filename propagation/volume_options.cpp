@@ -53,8 +53,7 @@ const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
 }
 
 void refuse_on_gpu(const VolumeOptions& o) {
-  if (o.cascade.nested())
-    throw Error(ExitCode::usage, "--cascades: nested grids are the CPU's; use --backend cpu");
+  if (o.cascade.nested()) throw Error(ExitCode::usage, "--cascades: nested grids are the CPU's; use --backend cpu");
   if (o.scheme.directions.value_or(0) > VolumeOptions::kMaxDirectionsGpu)
     throw Error(ExitCode::over_limit, fmt::format("--directions {}: the GPU takes {}; use --backend cpu",
                                                   *o.scheme.directions, VolumeOptions::kMaxDirectionsGpu));

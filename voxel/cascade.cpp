@@ -83,10 +83,11 @@ void check(const CascadeOptions& options, const Grid& outermost) {
   const double longest = std::max({outermost.cells.x, outermost.cells.y, outermost.cells.z});
   const double finest = longest * std::pow(options.ratio, options.levels - 1);
   if (finest > kMostFinestCells)
-    throw Error(ExitCode::over_limit,
-                fmt::format("{} cascades, each {} times as coarse: the scene is {:.0f} of the finest cells long, {} are "
-                            "told apart; fewer --cascades or a smaller --grid",
-                            options.levels, options.ratio, finest, kMostFinestCells));
+    throw Error(
+        ExitCode::over_limit,
+        fmt::format("{} cascades, each {} times as coarse: the scene is {:.0f} of the finest cells long, {} are "
+                    "told apart; fewer --cascades or a smaller --grid",
+                    options.levels, options.ratio, finest, kMostFinestCells));
 }
 
 }  // namespace

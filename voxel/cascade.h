@@ -11,10 +11,10 @@ namespace volgi {
 /// What nested grids there are to be. Trivially copyable, as all of VolumeOptions.
 struct CascadeOptions {
   static constexpr int kMostLevels = 8;
-  int levels = 1;           // grids, the outermost among them; 1: it alone
-  int ratio = 2;            // 2 or 4: edge of a grid's cells over that of the next one inside
-  glm::vec3 around{0.0f};   // where the inner ones lie [m], in the scene's centred frame
-  bool by_boxes = false;    // they lie there instead, from the outermost of the inner ones:
+  int levels = 1;          // grids, the outermost among them; 1: it alone
+  int ratio = 2;           // 2 or 4: edge of a grid's cells over that of the next one inside
+  glm::vec3 around{0.0f};  // where the inner ones lie [m], in the scene's centred frame
+  bool by_boxes = false;   // they lie there instead, from the outermost of the inner ones:
   std::array<GridBox, kMostLevels - 1> boxes{};
 
   bool nested() const { return levels > 1; }
@@ -40,7 +40,8 @@ struct Cascade {
 
 /// @param outermost  its cells are made up to whole blocks where there are several levels; alone it stays as it is.
 ///   Inner grids have as many cells along each axis as the outermost along its longest, but none beyond it.
-/// @throws Error(usage) for a ratio that is neither 2 nor 4, levels that are not 1 to kMostLevels, and a box that is not in the
+/// @throws Error(usage) for a ratio that is neither 2 nor 4, levels that are not 1 to kMostLevels, and a box that is
+/// not in the
 ///   outermost grid; Error(over_limit) where the scene is longer than kMostFinestCells of the innermost cells.
 Cascade make_cascade(const Grid& outermost, const CascadeOptions& options);
 

@@ -151,10 +151,11 @@ class Rim {
       see(from_behind(inner_, *near_inner), inner_, *near_inner);
     }
     if (own != nullptr && own->coverage >= 1.0f) return 1.0f;
-    Side side = own != nullptr ? *own
-                : near_outer != nullptr
-                    ? on_face(from_behind(outer_, *near_outer), point_of(outer_, *near_outer), inner_.grid(), fine, back)
-                    : on_face(*near_inner, point_of(inner_, *near_inner), inner_.grid(), fine, back);
+    Side side =
+        own != nullptr ? *own
+        : near_outer != nullptr
+            ? on_face(from_behind(outer_, *near_outer), point_of(outer_, *near_outer), inner_.grid(), fine, back)
+            : on_face(*near_inner, point_of(inner_, *near_inner), inner_.grid(), fine, back);
     set_coverage(side, 1.0f, inner_.grid().cell_size_m, own != nullptr ? own->coverage : 0.0f);
     inner_edits_[{side.cell, back}] = side;
     return 1.0f;

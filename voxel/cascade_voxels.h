@@ -8,9 +8,9 @@
 
 namespace volgi {
 
-/// Every grid of a cascade voxelized apart (voxelize_cpu), with a block around the inner ones, so that a fine grid costs
-/// what it holds; then sides in cells that another grid takes the place of go, and at its rim the faces of its cells and
-/// the ratio^2 times larger one of the cell outside are made to stop the same light.
+/// Every grid of a cascade voxelized apart (voxelize_cpu), with a block around the inner ones, so that a fine grid
+/// costs what it holds; then sides in cells that another grid takes the place of go, and at its rim the faces of its
+/// cells and the ratio^2 times larger one of the cell outside are made to stop the same light.
 ///
 /// Such a face is shut where a surface crosses the segment from the fine cell's centre to that of its like beyond the
 /// rim, or where an opaque side of the cell outside has that second centre behind it, or one of that fine cell's sides

@@ -163,12 +163,14 @@ void VolumeCommandOptions::add_cascades_to(CLI::App& command) {
       "long; on the CPU, of 'ordinates'; they move with the camera by 8 cells of the grid around (1)");
   around->check(CLI::Range(1, CascadeOptions::kMostLevels));
   command
-      .add_option("--cascade", cascade,
-                  "X0,Y0,Z0,X1,Y1,Z1: box of a nested grid in the file's frame [m] instead, made up to whole blocks of 8^3 "
-                  "cells of the grid around it; once for each, from outside in")
+      .add_option(
+          "--cascade", cascade,
+          "X0,Y0,Z0,X1,Y1,Z1: box of a nested grid in the file's frame [m] instead, made up to whole blocks of 8^3 "
+          "cells of the grid around it; once for each, from outside in")
       ->excludes(around)
       ->allow_extra_args(false);
-  command.add_option("--cascade-ratio", cascade_ratio, "edge of a grid's cells over that of the next one inside, 2 or 4")
+  command
+      .add_option("--cascade-ratio", cascade_ratio, "edge of a grid's cells over that of the next one inside, 2 or 4")
       ->check(CLI::IsMember({2, 4}))
       ->capture_default_str();
 }

@@ -31,8 +31,9 @@ struct VolumeCommandOptions {
   bool given() const;
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
-  /// Puts nested grids around the camera or where --cascade says, and the grid's box around --bounds; without it around what the camera (if there is one) and lamps reach
-  /// (reached_box()), where that is less than half as long as the scene, and says so.
+  /// Puts nested grids around the camera or where --cascade says, and the grid's box around --bounds; without it around
+  /// what the camera (if there is one) and lamps reach (reached_box()), where that is less than half as long as the
+  /// scene, and says so.
   /// @return what they reach. @throws Error(usage) for bounds that no part of the scene is in.
   std::optional<GridBox> fit_box(const Scene& scene, const std::optional<glm::vec3>& eye, VolumeOptions& options) const;
   /// The same without a camera, and where --grid is not given cells that suit the box (automatic_grid_cells()).

@@ -116,8 +116,8 @@ void NestedFaces::for_each_part(int slot, int octant, size_t level, glm::ivec3 b
   }
 }
 
-void NestedFaces::enter(const sweep::Kernels& kernels, int octets, int slot, int octant, size_t level,
-                        glm::ivec3 block, const Faces& outside) {
+void NestedFaces::enter(const sweep::Kernels& kernels, int octets, int slot, int octant, size_t level, glm::ivec3 block,
+                        const Faces& outside) {
   for (int axis = 0; axis < 3; ++axis) {
     glm::ivec3 upwind = block;
     upwind[axis] -= goes_up(octant, axis) ? 1 : -1;
@@ -130,8 +130,8 @@ void NestedFaces::enter(const sweep::Kernels& kernels, int octets, int slot, int
   }
 }
 
-void NestedFaces::leave(const sweep::Kernels& kernels, int octets, int slot, int octant, size_t level,
-                        glm::ivec3 block, const Faces& outside) {
+void NestedFaces::leave(const sweep::Kernels& kernels, int octets, int slot, int octant, size_t level, glm::ivec3 block,
+                        const Faces& outside) {
   for (int axis = 0; axis < 3; ++axis) {
     glm::ivec3 downwind = block;
     downwind[axis] += goes_up(octant, axis) ? 1 : -1;

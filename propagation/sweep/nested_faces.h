@@ -58,8 +58,8 @@ class NestedFaces {
   using Weights = std::array<float, sweep::kBlockFace>;  // of a block's face: cells of a row fastest, going up
   struct Level {
     glm::ivec3 blocks{0};
-    std::vector<Planes> planes;                            // by slot
-    std::array<std::map<int, Weights>, 6> weights;         // by face of the rim, then index of the block's face
+    std::vector<Planes> planes;                     // by slot
+    std::array<std::map<int, Weights>, 6> weights;  // by face of the rim, then index of the block's face
   };
   /// Calls visit(part, face of the inner level, its block) for all of a block's face.
   template <class Visit>

@@ -28,6 +28,7 @@ int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& p
 }
 
 int SweepPipeline::slots_of(const RanksOfVolume* ranks, size_t bytes_of_octant, AtOnce at_once) {
+  if (ranks == nullptr && at_once.of_one > 0) return at_once.of_one;
   if (ranks == nullptr) return 8 * bytes_of_octant > at_once.many_flows ? 1 : 8;
   if (at_once.of_ranks > 0) return at_once.of_ranks;
   if (ranks->lean) return 2;

@@ -48,6 +48,7 @@ class SweepPipeline {
   struct AtOnce {
     size_t many_flows = kManyFlows;
     int of_ranks = 0;  // 0: as above
+    int of_one = 0;    // rank; 0: as above
   };
 
   /// @param ranks  null: there is one. @param face_floats  of a block's face. @param at_once  for tests.
@@ -56,6 +57,8 @@ class SweepPipeline {
   int chunks() const { return chunks_; }
   int chunk_blocks() const { return chunk_blocks_; }
   int octants_at_once() const { return int(slots_.size()); }
+  /// Which of the octants under way at once this one is: 0 ... octants_at_once() - 1, or -1.
+  int slot(int octant) const { return slot_[size_t(octant)]; }
   bool alone() const { return ranks_ == nullptr; }
   /// All ranks: a new sweep of all octants. @param in_order  one octant after the other, also where they need not.
   void start(bool in_order);

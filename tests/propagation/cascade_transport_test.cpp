@@ -6,9 +6,11 @@
 #include <cstring>
 #include <random>
 
+#include "core/error.h"
 #include "core/sky.h"
 #include "propagation/bounces_cpu.h"
 #include "propagation/light_in/direct_light_cpu.h"
+#include "propagation/pixel_irradiance_cpu.h"
 #include "propagation/transport_ordinates_cpu.h"
 #include "propagation/volume_cpu.h"
 #include "tests/support/volume_scenes.h"
@@ -37,8 +39,11 @@ struct Room {
   VolumeSides sides;
   std::vector<bool> inside;  // by side: in the room
 
-  Room(int ratio, int count) : scene(made()), cascade(nested(ratio, count)),
-        levels(voxelize_cascade(scene, cascade, voxelization_mipmaps(scene))), sides(cascade, levels) {
+  Room(int ratio, int count)
+      : scene(made()),
+        cascade(nested(ratio, count)),
+        levels(voxelize_cascade(scene, cascade, voxelization_mipmaps(scene))),
+        sides(cascade, levels) {
     const glm::mat3 back = glm::transpose(turn());
     for (size_t i = 0; i < sides.count(); ++i) {
       const Grid& grid = sides.level(sides.level_of(i)).grid();
@@ -167,14 +172,13 @@ TEST(CascadeTransportOf, NoNumberDependsOnThreads) {
   const Powers sent = room.random_powers(4);
   std::vector<Powers> answers;
   for (const size_t threads : {size_t(1), size_t(3)}) {
-    for (const size_t many_flows : {size_t(1), SweepPipeline::kManyFlows}) {
+    for (const int octants_at_once : {1, 2, 8}) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-      OrdinatesTransportCpu transport(room.cascade, room.levels, CHOICES[0], {}, {many_flows, 0});
+      OrdinatesTransportCpu transport(room.cascade, room.levels, CHOICES[0], {}, {.of_one = octants_at_once});
       answers.push_back(carry(transport, sent));
     }
   }
-  for (const Powers& a : answers)
-    EXPECT_EQ(std::memcmp(a.data(), answers[0].data(), a.size() * sizeof(glm::vec4)), 0);
+  for (const Powers& a : answers) EXPECT_EQ(std::memcmp(a.data(), answers[0].data(), a.size() * sizeof(glm::vec4)), 0);
 }
 
 TEST(CascadeTransportOf, ConjugateGradientsFindWhatOrdersFind) {
@@ -214,8 +218,8 @@ std::vector<double> mean_of_ground(const VolumeCpu& volume, float reach_m) {
     const VoxelGrid& voxels = sides.level(level);
     for (size_t i = 0; i < voxels.side_count(); ++i) {
       const shared::Side& side = voxels.sides()[i];
-      const glm::vec3 at = shared::world_from_cell(
-          voxels.grid(), glm::vec3(shared::cell_coord(voxels.grid(), side.cell)) + 0.5f);
+      const glm::vec3 at =
+          shared::world_from_cell(voxels.grid(), glm::vec3(shared::cell_coord(voxels.grid(), side.cell)) + 0.5f);
       if (side.normal.y < 0.9f || at.y > 1.0f || std::abs(at.x) > reach_m || std::abs(at.z) > 3.0f) continue;
       mean[0] += double(side.area_m2) * double(volume.irradiance(level).direct[i].x);
       mean[1] += double(side.area_m2) * double(volume.irradiance(level).indirect[i].x);
@@ -246,6 +250,78 @@ TEST(CascadeVolume, IsNearOneFineGridWhereItIsFine) {
   EXPECT_NEAR(found[0] / truth[0], 1.0, 0.02);
   EXPECT_NEAR(found[1] / truth[1], 1.0, 0.03);
   EXPECT_LT(nested.bytes(), fine.bytes());
+}
+
+Scene street_under_sky() {
+  Scene scene = street();
+  scene.sky = std::make_shared<Sky>(glm::vec3(1.0f));
+  return scene;
+}
+
+VolumeOptions three_grids() {
+  VolumeOptions options;
+  options.grid_cells = 32;
+  options.cascade.levels = 3;
+  return options;
+}
+
+float ground_at(const VolumeCpu& volume, float x, float& weight) {
+  const PixelIrradiance e = irradiance_at_pixel(volume.sides(), volume.irradiance_of_levels(), {x, 0.0f, 0.31f},
+                                                {0.0f, 1.0f, 0.0f}, {0.0f, 2.0f, 0.0f, 1.0f});
+  weight = e.weight;
+  return e.direct.x + e.indirect.x;
+}
+
+// All along the street, through every rim: no dark line, and no step where cells become larger.
+TEST(CascadeVolume, PixelsShowNoRims) {
+  const Scene scene = street_under_sky();
+  VolumeCpu volume(scene, three_grids());
+  run_with_direct_light(volume, scene);
+  float before = 0.0f, largest = 0.0f;
+  for (float x = -17.0f; x <= 17.0f; x += 0.05f) {
+    float weight = 0.0f;
+    const float here = ground_at(volume, x, weight);
+    ASSERT_GT(weight, 0.0f) << x;
+    if (before > 0.0f) largest = std::max(largest, std::abs(here / before - 1.0f));
+    before = here;
+  }
+  EXPECT_LT(largest, 0.03f);
+}
+
+// A step within a block of the grids around changes no bit; where the grids move on, what is near keeps its light.
+TEST(CascadeVolume, MovesWithoutFlicker) {
+  const Scene scene = street_under_sky();
+  VolumeCpu volume(scene, three_grids());
+  const auto look = [&](float x) {
+    volume.move_cascade({x, 1.5f, 0.0f});
+    run_with_direct_light(volume, scene);
+    std::vector<float> seen;
+    float weight = 0.0f;
+    for (float at = -2.0f; at <= 2.0f; at += 0.1f) seen.push_back(ground_at(volume, at, weight));
+    return seen;
+  };
+  const std::vector<float> first = look(0.0f);
+  const Cascade cascade = volume.cascade();
+  EXPECT_EQ(look(0.3f), first);
+  EXPECT_TRUE(same_cascade(volume.cascade(), cascade));
+  const std::vector<float> moved = look(3.0f);
+  EXPECT_FALSE(same_cascade(volume.cascade(), cascade));
+  float largest = 0.0f;
+  for (size_t i = 0; i < first.size(); ++i) largest = std::max(largest, std::abs(moved[i] / first[i] - 1.0f));
+  EXPECT_LT(largest, 0.02f);
+}
+
+TEST(CascadeVolume, IsRefusedWhereThereIsNone) {
+  VolumeOptions options = three_grids();
+  EXPECT_NO_THROW(refuse_on_cpu(options));
+  try {
+    refuse_on_gpu(options);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ExitCode::usage);
+  }
+  options.scheme.scheme = Scheme::conservative;
+  EXPECT_THROW(refuse_on_cpu(options), Error);
 }
 
 TEST(CascadeVolume, BytesAreWhatIsExpected) {

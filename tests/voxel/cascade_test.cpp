@@ -43,7 +43,7 @@ void expect_nested(const Cascade& c) {
     const glm::vec3 first = shared::cell_from_world(c.grids[0], outer.origin);
     const glm::vec3 last = first + glm::vec3(outer.cells) * outer.cell_size_m / c.grids[0].cell_size_m;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool at_low = first[axis] < 0.01f, at_high = last[axis] > float(c.grids[0].cells[axis]) - 0.01f;
+      const bool at_low = first[axis]<0.01f, at_high = last[axis]> float(c.grids[0].cells[axis]) - 0.01f;
       EXPECT_GE(box.first[axis], at_low ? 0 : 1);
       EXPECT_LE(box.last[axis], leaf_blocks(outer)[axis] - (at_high ? 0 : 1));
     }
@@ -94,7 +94,7 @@ TEST(Cascade, MovesByWholeBlocksOfTheGridAround) {
     }
     before = c;
   }
-  EXPECT_GT(moves, 5);   // 40 m by blocks of 4 and 8 m
+  EXPECT_GT(moves, 5);  // 40 m by blocks of 4 and 8 m
   EXPECT_LT(moves, 20);
 }
 
@@ -244,7 +244,8 @@ TEST(CascadeVoxels, NoWallLeaksAtTheRim) {
       for (int from = 0; from < 4; ++from) {
         Journey journey(c, levels);
         journey.start(middle(from));
-        for (int to = 0; to < 4; ++to) EXPECT_EQ(journey.been(middle(to)), to == from) << levels_wanted << " levels, " << from << " to " << to;
+        for (int to = 0; to < 4; ++to)
+          EXPECT_EQ(journey.been(middle(to)), to == from) << levels_wanted << " levels, " << from << " to " << to;
       }
     }
   }

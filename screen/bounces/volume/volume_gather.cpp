@@ -41,7 +41,8 @@ void VolumeGather::look_from(const Camera& camera) {
 }
 
 void VolumeGather::run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VolumeSides& sides,
-                              std::span<const SideIrradiance> irradiance, const SmoothGather* with, gl::PassTimer& timer) {
+                              std::span<const SideIrradiance> irradiance, const SmoothGather* with,
+                              gl::PassTimer& timer) {
   if (with != nullptr) {
     const std::array<SmoothLight*, 1> first{&with->first};
     with->pixels.run(gbuffer, first, timer);

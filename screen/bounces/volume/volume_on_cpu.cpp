@@ -136,10 +136,10 @@ VolumeReport report_of(const VolumeCpu& volume) {
   return r;
 }
 
-/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded (but nested grids' pixels are read on the
-/// CPU); after a first bounce on the screen
-/// its virtual lights are read back. Where ranks hold the volume together this is the one that leads (VolumeLead), and
-/// has of the others' sides those that its pixels read, but no light_in() of them.
+/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded (but nested grids' pixels are read on
+/// the CPU); after a first bounce on the screen its virtual lights are read back. Where ranks hold the volume together
+/// this is the one that leads (VolumeLead), and has of the others' sides those that its pixels read, but no light_in()
+/// of them.
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
@@ -201,7 +201,8 @@ class SidesOnCpu : public FrameVolume {
   void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
   const VoxelGridGl& voxels() const override { return voxels_; }
   bool sides_on_gpu() const override {
-    return !options_.cascade.nested() && fit_on_gpu(volume_.grid(), lead_ ? totals_.sides : volume_.voxels().side_count());
+    return !options_.cascade.nested() &&
+           fit_on_gpu(volume_.grid(), lead_ ? totals_.sides : volume_.voxels().side_count());
   }
   const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
   const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
@@ -260,8 +261,7 @@ class SidesOnCpu : public FrameVolume {
     if (options_.side_rays) rays = size_t(*options_.side_rays);
     SideFlux flux = flux_after_first_bounce(sides, *embree_, lights, apart, rays);
     if (const SkyMaps* sky = first_bounce->sky)
-      add_sky(sides, sky_.irradiance(sides, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart,
-              flux);
+      add_sky(sides, sky_.irradiance(sides, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart, flux);
     return flux;
   }
   const VoxelGrid& sides() const { return lead_ ? fetched_.voxels : volume_.voxels(); }
