@@ -20,7 +20,7 @@ struct CascadeOptions {
   bool nested() const { return levels > 1; }
 };
 
-/// Nested grids (Kaplanyan and Dachsbacher 2010, section 4.4, "cascaded light propagation volumes"): the outermost
+/// Nested grids ("cascades" of Kaplanyan and Dachsbacher 2010): the outermost
 /// holds the scene, and each next one takes the place of a box of the one around it, with cells of 1/ratio of the edge.
 /// Boxes are of whole blocks of 8^3 cells of the grid around them, so that as their place moves they move by whole
 /// cells, and the same cells always lie in the same place. Between two boxes are blocks of the grid between, but at the

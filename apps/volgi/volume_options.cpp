@@ -89,7 +89,8 @@ void warn_of_large_cells(const Scene& scene, const GridBox& reached, const Volum
   constexpr float LEAST_CELLS = 4.0f;  // along the shortest edge; fewer cannot hold a room (docs/theory.md#ordinates)
   const glm::vec3 e = reached.max - reached.min;
   const float shortest = std::min({e.x, e.y, e.z});
-  const float cell = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box).cell_size_m;
+  const Grid grid = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box);
+  const float cell = make_cascade(grid, options.cascade).grids.back().cell_size_m;
   if (shortest < 1e-3f * longest_edge(reached) || shortest >= LEAST_CELLS * cell) return;  // a plane has no height
   warn_once(
       fmt::format("{}: cells of {:.2g} m for a place of {:.2g} x {:.2g} x {:.2g} m; its light will be wrong: a larger "
