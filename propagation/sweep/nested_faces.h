@@ -16,9 +16,9 @@ namespace volgi {
 /// when a sweep has come so far, and how it gets from a grid into the one inside and out again.
 ///
 /// Into the finer grid the power through a face is shared out evenly among the ratio^2 faces that it is made of; on the
-/// way out these add up. So no power is lost or made, none is negative, and the way back is the way there (docs/
-/// theory.md#cascades). Where the two grids' faces have sides, the fine ones say place by place what passes (1 - tau
-/// each); the coarse side's own mean share, which the kernel takes off afterwards, is divided out.
+/// way out these add up. So no power is lost or made, none is negative, and the way back is the way there
+/// (docs/theory.md#cascades). Where the two grids' faces have sides, the fine ones say place by place what passes
+/// (1 - tau each); the coarse side's own mean share, which the kernel takes off afterwards, is divided out.
 /// Memory: three planes of each inner grid, for each octant under way.
 class NestedFaces {
  public:
