@@ -1,6 +1,7 @@
 #include "propagation/bounces_cpu.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 
 namespace volgi {
@@ -16,8 +17,8 @@ glm::vec3 sent_power(const Side& side, glm::vec4 flux) {
 }  // namespace
 
 void BouncesCpu::make_room(const Run& run) {
-  const size_t count = run.voxels.side_count();
-  sums_.set(run.voxels, ranks_);
+  const size_t count = run.sides.count();
+  sums_.set(run.sides, ranks_);
   const bool continues = run.rules.continues() && received_indirect_.size() == count;
   if (!continues) {
     received_indirect_.assign(count, glm::vec4(0.0f));
@@ -34,19 +35,19 @@ void BouncesCpu::make_room(const Run& run) {
   sent_.resize(count);
   response_.resize(count);
   for_each_side(count, [&](size_t i) {
-    const Side& side = run.voxels.sides()[i];
+    const Side& side = run.sides[i];
     const bool receives = side.coverage > 0.0f && side.face_m2 > 0.0f;
     const glm::vec3 f =
         receives ? shared::side_returned_fraction(side.albedo, side.area_m2, side.face_m2) : glm::vec3(0);
-    response_[i] = glm::vec4(f, std::min(side.coverage, 1.0f));
+    response_[i] = glm::vec4(f, std::min(side.coverage, 1.0f) * run.sides.relative_face(i));
   });
 }
 
-BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
-                             const Sky* sky) {
+BounceReport BouncesCpu::run(const VolumeSides& sides, const SideFlux& flux, bool has_emission,
+                             const BounceRules& rules, const Sky* sky) {
   rules.check(transport_->linear());
   has_emission = has_emission || sky != nullptr;
-  const Run run{voxels, flux, has_emission, rules, sky};
+  const Run run{sides, flux, has_emission, rules, sky};
   make_room(run);
   BounceReport report;
   if (rules.passes_per_run) {
@@ -55,6 +56,7 @@ BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool
   }
   const int limit = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : BounceRules::kMaxOrders;
   resumed_.reset();
+  assert(checkpoint_ == nullptr || sides.levels() == 1);
   const bool resumed = checkpoint_ != nullptr && !rules.continues() && go_on(run, report);
   if (has_emission && limit > 0 && !resumed) arrival_of_emission(run, report);
   const glm::vec4 share = set_source(run);
@@ -71,17 +73,17 @@ BounceReport BouncesCpu::run(const VoxelGrid& voxels, const SideFlux& flux, bool
 /// Takes what the checkpoint has. @return false: nothing.
 bool BouncesCpu::go_on(const Run& run, BounceReport& report) {
   state_of_ = {};
-  std::array<std::int64_t, 1> sides{std::int64_t(run.voxels.side_count())};
+  std::array<std::int64_t, 1> sides{std::int64_t(run.sides.count())};
   if (ranks_ != nullptr) ranks_->add(sides);
   state_of_.sides = sides[0];
-  state_of_.cells = run.voxels.grid().cells;
+  state_of_.cells = run.sides.level(0).grid().cells;
   state_of_.conjugate_gradients = run.rules.conjugate_gradients(transport_->linear());
   send_emission(run);
   state_of_.emission = total(sent_);
   state_of_.punctual = sums_([&](size_t i) { return glm::dvec3(run.flux.punctual[i]); });
   Resumed found;
   found.state.of = state_of_;
-  if (!checkpoint_->load(run.voxels, found.state,
+  if (!checkpoint_->load(run.sides.level(0), found.state,
                          {&received_direct_, &received_indirect_, &found.residual, &found.direction}))
     return false;
   report = found.state.report;
@@ -92,7 +94,7 @@ bool BouncesCpu::go_on(const Run& run, BounceReport& report) {
 void BouncesCpu::keep(const Run& run, const BounceReport& report, const Powers& residual, const Powers& direction,
                       glm::dvec3 before, glm::dvec3 qq) {
   if (checkpoint_ == nullptr || run.rules.continues()) return;
-  checkpoint_->keep(run.voxels, {report.orders, report, before, qq, state_of_},
+  checkpoint_->keep(run.sides.level(0), {report.orders, report, before, qq, state_of_},
                     {&received_direct_, &received_indirect_, &residual, &direction});
 }
 
@@ -118,7 +120,7 @@ void BouncesCpu::carry_sources(const Powers& sent, const BounceRules& rules, Bou
 
 void BouncesCpu::send_emission(const Run& run) {
   for_each_side(sent_.size(),
-                [&](size_t i) { sent_[i] = glm::vec4(sent_power(run.voxels.sides()[i], run.flux.emitted[i]), 0.0f); });
+                [&](size_t i) { sent_[i] = glm::vec4(sent_power(run.sides[i], run.flux.emitted[i]), 0.0f); });
 }
 
 void BouncesCpu::arrival_of_emission(const Run& run, BounceReport& report) {
@@ -137,7 +139,7 @@ void BouncesCpu::arrival_of_emission(const Run& run, BounceReport& report) {
 glm::vec4 BouncesCpu::set_source(const Run& run) {
   for_each_side(source_.size(), [&](size_t i) {
     const glm::vec3 returned = glm::vec3(response_[i]) * glm::vec3(received_direct_[i]);
-    source_[i] = glm::vec4(returned + sent_power(run.voxels.sides()[i], run.flux.punctual[i]), 0.0f);
+    source_[i] = glm::vec4(returned + sent_power(run.sides[i], run.flux.punctual[i]), 0.0f);
   });
   const glm::dvec3 last = source_power_;
   source_power_ = total(source_);
@@ -248,11 +250,11 @@ void BouncesCpu::amortised(const Run& run, BounceReport& report) {
   }
 }
 
-std::vector<glm::vec4> BouncesCpu::sent(const VoxelGrid& voxels, const SideFlux& flux) const {
-  std::vector<glm::vec4> all(voxels.side_count());
+std::vector<glm::vec4> BouncesCpu::sent(const VolumeSides& sides, const SideFlux& flux) const {
+  std::vector<glm::vec4> all(sides.count());
   for_each_side(all.size(), [&](size_t i) {
     const glm::vec3 received = glm::vec3(received_direct_[i]) + glm::vec3(received_indirect_[i]);
-    const glm::vec3 own = sent_power(voxels.sides()[i], flux.emitted[i] + flux.punctual[i]);
+    const glm::vec3 own = sent_power(sides[i], flux.emitted[i] + flux.punctual[i]);
     all[i] = glm::vec4(own + glm::vec3(response_[i]) * received, 0.0f);
   });
   return all;

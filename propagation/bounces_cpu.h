@@ -18,9 +18,10 @@ namespace volgi {
 /// Conjugate gradients: with K from sent to received power, f the returned fraction and e what the sources send, the
 /// power P that sides receive solves P = K(e + fP). S = K/tau of the receiving side is symmetric, so I - fK is
 /// self-adjoint and positive in the product <a,b> = sum of a b / (f tau) over what sides send, and is solved there; in
-/// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (docs/theory.md#orders). Every step's K d is added
-/// up into P, which makes P = K(e + v) of the sought v = fP: one plain bounce from v, also where f = 0, at no cost. The
-/// residual q = fP - v is what that bounce changes of what sides send, so orders_ended() speaks of both solvers alike.
+/// u = P sqrt(f/tau) that is (I - √(fτ) S √(fτ)) u = √(fτ) S e (docs/theory.md#orders). Where faces are of several
+/// sizes (a cascade's), tau is times their area. Every step's K d is added up into P, which makes P = K(e + v) of the
+/// sought v = fP: one plain bounce from v, also where f = 0, at no cost. The residual q = fP - v is what that bounce
+/// changes of what sides send, so orders_ended() speaks of both solvers alike.
 class BouncesCpu {
  public:
   /// @param ranks  that the voxels are parts of (the transport's); null: there is one.
@@ -29,9 +30,10 @@ class BouncesCpu {
 
   /// @throws Error(usage) as BounceRules::check.
   /// @param sky  streams in with the arrival of emission, and is arrival alike; null: none.
-  BounceReport run(const VoxelGrid& voxels, const SideFlux& flux, bool has_emission, const BounceRules& rules,
+  BounceReport run(const VolumeSides& sides, const SideFlux& flux, bool has_emission, const BounceRules& rules,
                    const Sky* sky = nullptr);
-  /// Later runs keep their state there and go on from one that is there; null: none. Not amortised or warm ones.
+  /// Later runs keep their state there and go on from one that is there; null: none. Not amortised or warm ones, and of
+  /// one grid.
   void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
   /// For voxels that have changed: the answer stays, as the next run's start; an amortised order in flight does not.
   void set_transport(std::unique_ptr<TransportCpu> transport);
@@ -39,7 +41,7 @@ class BouncesCpu {
   const std::vector<glm::vec4>& received_direct() const { return received_direct_; }  // emission's first arrival [W]
   const std::vector<glm::vec4>& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
   /// Power per side sent in all orders [W]: what the radiance in free space follows from.
-  std::vector<glm::vec4> sent(const VoxelGrid& voxels, const SideFlux& flux) const;
+  std::vector<glm::vec4> sent(const VolumeSides& sides, const SideFlux& flux) const;
   TransportCpu& transport() const { return *transport_; }
   /// Of the powers of so many sides; the transport's own are apart.
   static size_t bytes_for(size_t sides) { return 6 * sizeof(glm::vec4) * sides; }
@@ -47,7 +49,7 @@ class BouncesCpu {
  private:
   using Powers = std::vector<glm::vec4>;
   struct Run {
-    const VoxelGrid& voxels;
+    const VolumeSides& sides;
     const SideFlux& flux;
     bool has_emission;  // or sky
     const BounceRules& rules;
@@ -108,5 +110,8 @@ struct SideIrradiance {
 /// @param halo  of a rank's voxels: what others have at the sides beside its own; null: there are no others.
 SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
                                const SideHalo* halo = nullptr);
+/// Of one level of a volume, of which `flux` and `bounces` are; of its sides alone.
+SideIrradiance side_irradiance_of_level(const VolumeSides& sides, size_t level, const SideFlux& flux,
+                                        const BouncesCpu& bounces, const SideHalo* halo = nullptr);
 
 }  // namespace volgi

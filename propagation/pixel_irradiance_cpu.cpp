@@ -1,5 +1,6 @@
 #include "propagation/pixel_irradiance_cpu.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "propagation/reachable_cells_internal.h"
@@ -105,7 +106,43 @@ PixelIrradiance gathered(const VoxelGrid& voxels, const SideIrradiance& irradian
   return reader.sum();
 }
 
+/// How far inside of a level a place is, in its cells, where other cells lie beyond its rim; more than a few: far.
+float from_rim(const VolumeSides& sides, size_t level, glm::vec3 place) {
+  const Grid &grid = sides.level(level).grid(), &outermost = sides.level(0).grid();
+  const glm::vec3 low = shared::cell_from_world(grid, place), high = glm::vec3(grid.cells) - low;
+  // Where the outermost grid begins and ends, in the same cells.
+  const glm::vec3 first = shared::cell_from_world(grid, outermost.origin);
+  const glm::vec3 last =
+      first + glm::vec3(sides.finest_grid().cells) * (sides.finest_grid().cell_size_m / grid.cell_size_m);
+  float least = 1e3f;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (first[axis] < -0.5f) least = std::min(least, low[axis]);
+    if (last[axis] > float(grid.cells[axis]) + 0.5f) least = std::min(least, high[axis]);
+  }
+  return least;
+}
+
 }  // namespace
+
+PixelIrradiance irradiance_at_pixel(const VolumeSides& sides, std::span<const SideIrradiance> irradiance,
+                                    glm::vec3 position, glm::vec3 normal, glm::vec4 viewer) {
+  constexpr float FIRST = 0.25f,
+                  LAST = 1.0f;  // cells before the rim; beyond half a cell of the level around it has none
+  const size_t level = sides.level_of(position, normal);
+  const auto of_level = [&](size_t l) {
+    return irradiance_at_pixel(sides.level(l), irradiance[l], position, normal, viewer);
+  };
+  if (level == 0) return of_level(0);
+  const glm::vec3 place = position + 0.5f * sides.level(level).grid().cell_size_m * normal;
+  const float share = glm::clamp((from_rim(sides, level, place) - FIRST) / (LAST - FIRST), 0.0f, 1.0f);
+  const PixelIrradiance inner = share > 0.0f ? of_level(level) : PixelIrradiance{};
+  if (share == 1.0f && inner.weight > 0.0f) return inner;
+  const PixelIrradiance around = of_level(level - 1);
+  if (inner.weight == 0.0f) return around;
+  if (around.weight == 0.0f) return inner;
+  return {glm::mix(around.direct, inner.direct, share), glm::mix(around.indirect, inner.indirect, share),
+          std::max(around.weight, inner.weight)};
+}
 
 PixelIrradiance irradiance_at_pixel(const VoxelGrid& voxels, const SideIrradiance& irradiance, glm::vec3 position,
                                     glm::vec3 normal, glm::vec4 viewer) {

@@ -1,8 +1,9 @@
 #pragma once
 #include <glm/glm.hpp>
+#include <span>
 
 #include "propagation/bounces_cpu.h"
-#include "voxel/voxel_grid.h"
+#include "voxel/volume_sides.h"
 
 namespace volgi {
 
@@ -19,5 +20,10 @@ struct PixelIrradiance {
 /// @param viewer  xyz position, w 1; or towards the viewer, w 0.
 PixelIrradiance irradiance_at_pixel(const VoxelGrid& voxels, const SideIrradiance& irradiance, glm::vec3 position,
                                     glm::vec3 normal, glm::vec4 viewer);
+
+/// Of nested grids: what the innermost one shows that has the point, and over the last cell before its rim more and
+/// more of what the one around shows. @param irradiance  by level.
+PixelIrradiance irradiance_at_pixel(const VolumeSides& sides, std::span<const SideIrradiance> irradiance,
+                                    glm::vec3 position, glm::vec3 normal, glm::vec4 viewer);
 
 }  // namespace volgi

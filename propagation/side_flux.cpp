@@ -100,9 +100,8 @@ std::vector<NumberedFluxSample> samples_of_part(const VoxelGrid& voxels, const R
   return here;
 }
 
-}  // namespace
-
-void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost) {
+void deposit_in_grid(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux,
+                     glm::vec3& lost) {
   std::vector<Target> targets(samples.size());
   for_each_side(samples.size(), [&](size_t i) { targets[i] = target_of(voxels, samples[i]); });
   // Sides may get thousands of samples each: sums are double.
@@ -122,6 +121,20 @@ void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::
   }
   for_each_side(flux.size(), [&](size_t i) { flux[i] += glm::vec4(sums[i], 0.0f); });
   lost += glm::vec3(found_none.value(nullptr));
+}
+
+}  // namespace
+
+void deposit(const VolumeSides& sides, std::span<const FluxSample> samples, std::span<glm::vec4> flux,
+             glm::vec3& lost) {
+  if (sides.levels() == 1) {
+    deposit_in_grid(sides.level(0), samples, flux, lost);
+    return;
+  }
+  std::vector<std::vector<FluxSample>> of_level(sides.levels());
+  for (const FluxSample& s : samples) of_level[sides.level_of(s.position, s.normal)].push_back(s);
+  for (size_t level = 0; level < sides.levels(); ++level)
+    deposit_in_grid(sides.level(level), of_level[level], sides.of_level(flux, level), lost);
 }
 
 void deposit(const VoxelGrid& voxels, const RanksOfVolume& ranks, std::span<const NumberedFluxSample> samples,

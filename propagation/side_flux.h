@@ -5,7 +5,7 @@
 
 #include "core/light.h"
 #include "voxel/side_halo.h"
-#include "voxel/voxel_grid.h"
+#include "voxel/volume_sides.h"
 
 namespace volgi {
 
@@ -20,7 +20,8 @@ struct SideFlux {
 
 /// Deposits samples on the sides that stand for their points (docs/theory.md#light-in): the sum over sides and `lost`
 /// is the sum over samples. Samples are added in their order, whatever the number of threads.
-void deposit(const VoxelGrid& voxels, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost);
+/// Of a cascade each goes to the level of the cells that see it.
+void deposit(const VolumeSides& sides, std::span<const FluxSample> samples, std::span<glm::vec4> flux, glm::vec3& lost);
 
 /// All ranks: the same, of samples that are spread over them in any way, to the last bit: the rank that has a sample's
 /// cell looks for its sides, and what belongs to others goes there; each side adds up in the order of the numbers.

@@ -24,6 +24,13 @@ float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, sh
 
 SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
                                const SideHalo* halo) {
+  return side_irradiance_of_level(voxels, 0, flux, bounces, halo);
+}
+
+SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, const SideFlux& flux,
+                                        const BouncesCpu& bounces, const SideHalo* halo) {
+  const VoxelGrid& voxels = all.level(level);
+  const size_t number = all.first(level);
   const std::vector<shared::Side>& sides = voxels.sides();
   const size_t count = voxels.side_count();
   std::vector<glm::vec3> direct(sides.size()), indirect(sides.size());  // weighted [W]
@@ -34,8 +41,8 @@ SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, co
       return weight_of(s) * shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, axis,
                                                     s.area_m2, s.face_m2);
     };
-    direct[i] = weighted(bounces.received_direct()[i], flux.emitted[i]);
-    indirect[i] = weighted(bounces.received_indirect()[i], flux.punctual[i]);
+    direct[i] = weighted(bounces.received_direct()[number + i], flux.emitted[number + i]);
+    indirect[i] = weighted(bounces.received_indirect()[number + i], flux.punctual[number + i]);
   });
   if (halo != nullptr) {
     halo->fetch(direct);

@@ -8,7 +8,7 @@
 
 #include "core/exact_sum.h"
 #include "core/ranks.h"
-#include "voxel/voxel_grid.h"
+#include "voxel/volume_sides.h"
 
 namespace volgi {
 
@@ -28,15 +28,18 @@ void for_each_side(size_t count, const Body& body) {
 class SideSums {
  public:
   /// @param ranks  that have the other sides; null: there are none.
-  void set(const VoxelGrid& voxels, const Ranks* ranks) {
+  void set(const VolumeSides& sides, const Ranks* ranks) {
     ranks_ = ranks;
-    count_ = voxels.side_count();
+    count_ = sides.count();
     starts_.clear();
-    glm::ivec3 last(-1);
-    for (size_t i = 0; i < count_; ++i) {
-      const glm::ivec3 block = shared::cell_coord(voxels.grid(), voxels.sides()[i].cell) / kLeafCells;
-      if (block != last) starts_.push_back(i);
-      last = block;
+    for (size_t level = 0; level < sides.levels(); ++level) {
+      const VoxelGrid& voxels = sides.level(level);
+      glm::ivec3 last(-1);
+      for (size_t i = 0; i < voxels.side_count(); ++i) {
+        const glm::ivec3 block = shared::cell_coord(voxels.grid(), voxels.sides()[i].cell) / kLeafCells;
+        if (block != last) starts_.push_back(sides.first(level) + i);
+        last = block;
+      }
     }
   }
 

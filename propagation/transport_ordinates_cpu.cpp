@@ -142,7 +142,8 @@ struct PackedSides {
 };
 
 /// Sides of a block as the kernels want them; those of a cell follow each other.
-sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, const PassagesOfBlock& passages,
+/// @param number  of the voxels' first side.
+sweep::BlockSides pack_block(const VoxelGrid& voxels, size_t number, glm::ivec3 block, const PassagesOfBlock& passages,
                              PackedSides packed_sides) {
   sweep::BlockSides packed{};
   packed.first_side = std::uint32_t(packed_sides.number.size());
@@ -167,7 +168,7 @@ sweep::BlockSides pack_block(const VoxelGrid& voxels, glm::ivec3 block, const Pa
           if (((faces >> f) & 1u) == 0) continue;
           const bool is_side = shared::has_side(cell, f);
           const std::uint32_t side = is_side ? shared::side_index(cell, f) : kNoSide;
-          packed_sides.number.push_back(side);
+          packed_sides.number.push_back(is_side ? std::uint32_t(number) + side : kNoSide);
           packed_sides.passes.push_back(is_side ? 1.0f - std::min(voxels.sides()[side].coverage, 1.0f)
                                                 : passage->second[size_t(f)]);
         }
@@ -233,40 +234,71 @@ OrdinatesTransportCpu::Angles OrdinatesTransportCpu::make_angles(OrdinateChoice 
   return angles;
 }
 
-OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
+OrdinatesTransportCpu::OrdinatesTransportCpu(const VolumeSides& sides, const Cascade* cascade,
+                                             std::span<const VoxelGrid> levels, OrdinateChoice choice,
                                              const sweep::Kernels* kernels, const RanksOfVolume* ranks,
                                              SweepPipeline::AtOnce at_once, std::optional<OrdinateChoice> sources)
-    : voxels_(voxels),
+    : all_sides_(sides),
+      voxels_(sides.level(0)),
+      cascade_(cascade),
       kernels_(kernels != nullptr ? *kernels : sweep::available().kernels[0]),
-      all_(make_angles(choice, voxels.grid().cell_size_m)),
-      pipeline_(ranks, voxels.part(), face_floats(), at_once) {
-  if (sources) sources_ = make_angles(*sources, voxels.grid().cell_size_m);
+      all_(make_angles(choice, voxels_.grid().cell_size_m)),
+      pipeline_(ranks, voxels_.part(), face_floats(), with_inner_grids(cascade, face_floats(), at_once)) {
+  if (sources) sources_ = make_angles(*sources, voxels_.grid().cell_size_m);
   assert(!sources_ || sources_->batches[0].octets == all_.batches[0].octets);
+  if (cascade != nullptr) nested_.emplace(*cascade, levels, face_floats(), pipeline_.octants_at_once());
   pack_sides({});
 }
 
+OrdinatesTransportCpu::OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice,
+                                             const sweep::Kernels* kernels, const RanksOfVolume* ranks,
+                                             SweepPipeline::AtOnce at_once, std::optional<OrdinateChoice> sources)
+    : OrdinatesTransportCpu(VolumeSides(voxels), nullptr, {}, choice, kernels, ranks, at_once, sources) {}
+
+OrdinatesTransportCpu::OrdinatesTransportCpu(const Cascade& cascade, std::span<const VoxelGrid> levels,
+                                             OrdinateChoice choice, std::optional<OrdinateChoice> sources,
+                                             SweepPipeline::AtOnce at_once)
+    : OrdinatesTransportCpu(VolumeSides(cascade, levels), &cascade, levels, choice, nullptr, nullptr, at_once,
+                            sources) {}
+
+/// A cascade is there to take little memory; the outermost grid has few blocks, so threads have octants each.
+SweepPipeline::AtOnce OrdinatesTransportCpu::with_inner_grids(const Cascade* cascade, size_t face_floats,
+                                                              SweepPipeline::AtOnce at_once) {
+  if (cascade == nullptr || at_once.of_one > 0) return at_once;
+  const BlockBox outermost{glm::ivec3(0), leaf_blocks(cascade->grids.front())};
+  const size_t of_octant = NestedFaces::bytes_for(*cascade, face_floats) +
+                           SweepPipeline::bytes_for(nullptr, outermost, face_floats, {.of_one = 1});
+  at_once.of_one = 8 * of_octant > SweepPipeline::kManyFlowsOfRank ? 2 : 8;
+  return at_once;
+}
+
 void OrdinatesTransportCpu::set_passages(std::span<const PassageFace> faces) {
-  if (!faces.empty() || side_.size() != voxels_.side_count()) pack_sides(faces);
+  if (!faces.empty() || side_.size() != all_sides_.count()) pack_sides(faces);
 }
 
 void OrdinatesTransportCpu::pack_sides(std::span<const PassageFace> passages) {
-  const BlockBox& part = voxels_.part();
   const std::map<int, PassagesOfBlock> of_blocks = passages_by_block(voxels_, passages);
   std::vector<float> passes;
-  sides_of_block_.assign(part.count(), -1);
   block_sides_.clear();
   side_.clear();
-  side_.reserve(voxels_.side_count());
-  passes.reserve(voxels_.side_count());
-  for (size_t i = 0; i < sides_of_block_.size(); ++i) {
-    const glm::ivec3 block = part.block(i);
-    const auto there = of_blocks.find(block_index(voxels_.blocks(), block));
-    if (voxels_.leaf(block) == nullptr && there == of_blocks.end()) continue;
-    sides_of_block_[i] = int(block_sides_.size());
-    block_sides_.push_back(
-        pack_block(voxels_, block, there != of_blocks.end() ? there->second : PassagesOfBlock{}, {side_, passes}));
+  side_.reserve(all_sides_.count());
+  passes.reserve(all_sides_.count());
+  sides_of_block_.resize(all_sides_.levels());
+  for (size_t level = 0; level < all_sides_.levels(); ++level) {
+    const VoxelGrid& voxels = all_sides_.level(level);
+    const BlockBox& part = voxels.part();
+    std::vector<int>& of_block = sides_of_block_[level];
+    of_block.assign(part.count(), -1);
+    for (size_t i = 0; i < of_block.size(); ++i) {
+      const glm::ivec3 block = part.block(i);
+      const auto there = level == 0 ? of_blocks.find(block_index(voxels.blocks(), block)) : of_blocks.end();
+      if (voxels.leaf(block) == nullptr && there == of_blocks.end()) continue;
+      of_block[i] = int(block_sides_.size());
+      block_sides_.push_back(pack_block(voxels, all_sides_.first(level), block,
+                                        there != of_blocks.end() ? there->second : PassagesOfBlock{}, {side_, passes}));
+    }
   }
-  assert(side_.size() >= voxels_.side_count());
+  assert(side_.size() >= all_sides_.count());
   sends_.resize(block_sides_.size());
   sent_.assign(side_.size(), glm::vec4(0.0f));
   for (size_t i = 0; i < side_.size(); ++i) sent_[i].w = passes[i];  // constant
@@ -274,7 +306,7 @@ void OrdinatesTransportCpu::pack_sides(std::span<const PassageFace> passages) {
 }
 
 void OrdinatesTransportCpu::begin(std::span<const glm::vec4> sent) {
-  assert(sent.size() == voxels_.side_count());
+  assert(sent.size() == all_sides_.count());
   tbb::parallel_for(size_t(0), block_sides_.size(), [&](size_t b) {
     const size_t first = block_sides_[b].first_side;
     const size_t last = b + 1 < block_sides_.size() ? block_sides_[b + 1].first_side : side_.size();
@@ -330,7 +362,7 @@ void OrdinatesTransportCpu::fill_rim(SweepPipeline::Task task, int axis) {
 
 bool OrdinatesTransportCpu::advance(std::span<glm::vec4> received, int /*max_passes*/, const BounceRules& /*rules*/,
                                     BounceReport& report) {
-  assert(received.size() == voxels_.side_count());
+  assert(received.size() == all_sides_.count());
   for (batch_ = 0; batch_ < angles().batches.size(); ++batch_) {
     sweep(false, nullptr);
     add_arrived(received);
@@ -355,6 +387,7 @@ void OrdinatesTransportCpu::add_arrived(std::span<glm::vec4> received) {
 }
 
 RadianceVolume OrdinatesTransportCpu::radiance(std::span<const glm::vec4> sent) {
+  assert(cascade_ == nullptr);
   begin(sent);
   RadianceLeaves leaves(voxels_.part());
   for (batch_ = 0; batch_ < angles().batches.size(); ++batch_) sweep(true, &leaves);  // octants add to the same cells
@@ -415,45 +448,86 @@ void OrdinatesTransportCpu::sweep_row(SweepPipeline::Task task, int y, int z, Ra
     if (streams_in_)
       kernels_.fill_face(constants().octets, angles().inflow[batch_][size_t(octant)][0].data(), x_carried);
   }
-  const sweep::Kernel kernel =
-      kernels_.kernel(angles().choice.rule == Ordinates::characteristic, constants().octets, leaves != nullptr);
   for (int x = first_x; x < std::min(first_x + width, n.x); ++x) {
     const glm::ivec3 along(x, y, z);
     const glm::ivec3 block = part.first + positive * along + (1 - positive) * (n - 1 - along);
-    const int sides = sides_of_block_[part.index(block)];
     const size_t by_y = size_t(x - first_x) + size_t(width) * size_t(z);
     const size_t by_z = size_t(x - first_x) + size_t(width) * size_t(y);
-    unsigned char& y_lit = through_y.lit[by_y];
-    unsigned char& z_lit = through_z.lit[by_z];
-    if (x_lit == 0 && y_lit == 0 && z_lit == 0 && (sides < 0 || sends_[size_t(sides)] == 0)) continue;
-    const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels_.grid().cells - kBlockCells * block);
-    sweep::Block b{};
-    b.x = x_carried;
-    b.y = through_y.values + by_y * face;
-    b.z = through_z.values + by_z * face;
-    if (x_lit == 0) std::fill(b.x, b.x + face, 0.0f);
-    if (y_lit == 0) std::fill(b.y, b.y + face, 0.0f);
-    if (z_lit == 0) std::fill(b.z, b.z + face, 0.0f);
-    for (int a = 0; a < 3; ++a) b.extent[a] = extent[a];
-    b.octant = octant;
-    if (sides >= 0) {
-      const size_t first = block_sides_[size_t(sides)].first_side;
-      b.sides = &block_sides_[size_t(sides)];
-      b.sent = &sent_[first].x;
-      b.arrived = &arrived_[4 * first].x;
-    }
-    if (leaves != nullptr) leaves->attach(b, block);
-    kernel(constants(), b);
-    x_lit = any_light(b.x, face) ? 1 : 0;
-    y_lit = any_light(b.y, face) ? 1 : 0;
-    z_lit = any_light(b.z, face) ? 1 : 0;
+    sweep_turn(octant,
+               {0,
+                block,
+                {{{x_carried, &x_lit},
+                  {through_y.values + by_y * face, &through_y.lit[by_y]},
+                  {through_z.values + by_z * face, &through_z.lit[by_z]}}}},
+               leaves);
   }
+}
+
+void OrdinatesTransportCpu::sweep_turn(int octant, const Turn& turn, RadianceLeaves* leaves) {
+  if (cascade_ != nullptr && cascade_->covers(turn.level, turn.block)) {
+    sweep_inside(octant, turn);
+    return;
+  }
+  const VoxelGrid& voxels = all_sides_.level(turn.level);
+  const size_t face = face_floats();
+  const auto& [x, y, z] = turn.faces;
+  const int sides = sides_of_block_[turn.level][voxels.part().index(turn.block)];
+  if (*x.lit == 0 && *y.lit == 0 && *z.lit == 0 && (sides < 0 || sends_[size_t(sides)] == 0)) return;
+  const glm::ivec3 extent = glm::min(glm::ivec3(kBlockCells), voxels.grid().cells - kBlockCells * turn.block);
+  sweep::Block b{};
+  b.x = x.values;
+  b.y = y.values;
+  b.z = z.values;
+  for (const NestedFaces::Face& f : turn.faces) {
+    if (*f.lit == 0) std::fill(f.values, f.values + face, 0.0f);
+  }
+  for (int a = 0; a < 3; ++a) b.extent[a] = extent[a];
+  b.octant = octant;
+  if (sides >= 0) {
+    const size_t first = block_sides_[size_t(sides)].first_side;
+    b.sides = &block_sides_[size_t(sides)];
+    b.sent = &sent_[first].x;
+    b.arrived = &arrived_[4 * first].x;
+  }
+  if (leaves != nullptr) leaves->attach(b, turn.block);
+  kernels_.kernel(angles().choice.rule == Ordinates::characteristic, constants().octets, leaves != nullptr)(constants(),
+                                                                                                            b);
+  for (const NestedFaces::Face& f : turn.faces) *f.lit = any_light(f.values, face) ? 1 : 0;
+}
+
+/// The blocks of the next level that have taken a block's place, upwind ones first.
+void OrdinatesTransportCpu::sweep_inside(int octant, const Turn& turn) {
+  const int slot = pipeline_.slot(octant), ratio = cascade_->ratio, octets = constants().octets;
+  const glm::ivec3 positive(octant & 1, (octant >> 1) & 1, octant >> 2);
+  const glm::ivec3 first = nested_->first_inside(turn.level, turn.block);
+  nested_->enter(kernels_, octets, slot, octant, turn.level, turn.block, turn.faces);
+  glm::ivec3 along;
+  for (along.z = 0; along.z < ratio; ++along.z) {
+    for (along.y = 0; along.y < ratio; ++along.y) {
+      for (along.x = 0; along.x < ratio; ++along.x) {
+        const glm::ivec3 block = first + positive * along + (1 - positive) * (ratio - 1 - along);
+        sweep_turn(octant, {turn.level + 1, block, nested_->faces(slot, turn.level + 1, block)}, nullptr);
+      }
+    }
+  }
+  nested_->leave(kernels_, octets, slot, octant, turn.level, turn.block, turn.faces);
 }
 
 size_t OrdinatesTransportCpu::bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected) {
   const BlockBox all{glm::ivec3(0), leaf_blocks(grid)};
   return bytes_of_sides(all, expected) +
          SweepPipeline::bytes_for(nullptr, all, face_floats(octets_of(std::min(choice.directions / 8, int(kBatch)))));
+}
+
+size_t OrdinatesTransportCpu::bytes_for(const Cascade& cascade, OrdinateChoice choice, const ExpectedSides& expected) {
+  const size_t face = face_floats(octets_of(std::min(choice.directions / 8, int(kBatch))));
+  const BlockBox all{glm::ivec3(0), leaf_blocks(cascade.grids[0])};
+  const SweepPipeline::AtOnce at_once = with_inner_grids(&cascade, face, {});
+  const auto octants = size_t(SweepPipeline::octants_at_once(all, face, at_once));
+  size_t blocks = 0;
+  for (const Grid& grid : cascade.grids) blocks += BlockBox{glm::ivec3(0), leaf_blocks(grid)}.count();
+  return bytes_of_sides(all, expected) + (blocks - all.count()) * sizeof(int) +
+         SweepPipeline::bytes_for(nullptr, all, face, at_once) + octants * NestedFaces::bytes_for(cascade, face);
 }
 
 size_t OrdinatesTransportCpu::bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice,
@@ -474,8 +548,11 @@ size_t OrdinatesTransportCpu::bytes_of_sides(const BlockBox& part, const Expecte
 }
 
 size_t OrdinatesTransportCpu::bytes() const {
-  return sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + sides_of_block_.size() * 4 +
-         side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) + pipeline_.bytes();
+  size_t blocks = 0;
+  for (const auto& of_level : sides_of_block_) blocks += of_level.size();
+  return sizeof *this + block_sides_.size() * (sizeof(sweep::BlockSides) + 1) + blocks * sizeof(int) +
+         side_.size() * (sizeof(std::uint32_t) + 5 * sizeof(glm::vec4)) + pipeline_.bytes() +
+         (nested_ ? nested_->bytes() : 0);
 }
 
 }  // namespace volgi

@@ -6,10 +6,12 @@
 #include <vector>
 
 #include "propagation/ordinates.h"
+#include "propagation/sweep/nested_faces.h"
 #include "propagation/sweep/sweep_kernel.h"
 #include "propagation/sweep/sweep_pipeline.h"
 #include "propagation/transport_cpu.h"
 #include "voxel/expected_sides.h"
+#include "voxel/volume_sides.h"
 
 namespace volgi {
 
@@ -25,6 +27,12 @@ namespace volgi {
 /// registers) per octant, or, where eight would take more than SweepPipeline::kManyFlows, once: octants then take
 /// turns, with the same answer (several ranks: sweep/sweep_pipeline.h); 84 bytes a side, 2.2 KiB a block with sides, 4
 /// bytes a block. Twin: transport_ordinates_gl.cpp.
+///
+/// Of a cascade the same sweep goes through all grids at once: where a block's place has been taken by the next grid,
+/// that grid's blocks there follow, and light passes the rim with its power kept (sweep/nested_faces.h). Faces are then
+/// of several sizes: reciprocal is K over the receiving side's coverage and the area of its face. Memory is three
+/// planes of each inner grid more an octant, of which two are under way where eight would take more than
+/// kManyFlowsOfRank.
 class OrdinatesTransportCpu : public TransportCpu {
  public:
   /// @param kernels  null: the fastest that this machine can run.
@@ -36,6 +44,9 @@ class OrdinatesTransportCpu : public TransportCpu {
   OrdinatesTransportCpu(const VoxelGrid& voxels, OrdinateChoice choice, const sweep::Kernels* kernels = nullptr,
                         const RanksOfVolume* ranks = nullptr, SweepPipeline::AtOnce at_once = {},
                         std::optional<OrdinateChoice> sources = {});
+  /// Of a cascade, whose levels' sides follow each other (VolumeSides). Both must outlive this; one rank.
+  OrdinatesTransportCpu(const Cascade& cascade, std::span<const VoxelGrid> levels, OrdinateChoice choice,
+                        std::optional<OrdinateChoice> sources = {}, SweepPipeline::AtOnce at_once = {});
 
   void begin(std::span<const glm::vec4> sent) override;
   void stream_in(const Sky* sky) override;
@@ -44,11 +55,13 @@ class OrdinatesTransportCpu : public TransportCpu {
   bool advance(std::span<glm::vec4> received, int max_passes, const BounceRules& rules, BounceReport& report) override;
   bool iterative() const override { return false; }
   bool linear() const override { return true; }
-  /// One more sweep, octant after octant. Cells that no light reached are inactive.
+  /// One more sweep, octant after octant. Cells that no light reached are inactive. Of one grid.
   RadianceVolume radiance(std::span<const glm::vec4> sent) override;
   size_t bytes() const override;
   /// What bytes() will be.
   static size_t bytes_for(const Grid& grid, OrdinateChoice choice, const ExpectedSides& expected);
+  /// Of a cascade. @param expected  of all levels together.
+  static size_t bytes_for(const Cascade& cascade, OrdinateChoice choice, const ExpectedSides& expected);
   /// Of a rank's part.
   static size_t bytes_for(const RanksOfVolume& ranks, OrdinateChoice choice, const ExpectedSides& expected);
   /// Of these, about what a column of blocks along x without any sides takes on lean ranks.
@@ -69,8 +82,21 @@ class OrdinatesTransportCpu : public TransportCpu {
     std::uint64_t inflow_of = 0;  // Sky::id() that inflow is made from
   };
   struct RadianceLeaves;
+  /// A block on its turn: its level and place, and the light at its faces.
+  struct Turn {
+    size_t level;
+    glm::ivec3 block;
+    NestedFaces::Faces faces;
+  };
 
+  OrdinatesTransportCpu(const VolumeSides& sides, const Cascade* cascade, std::span<const VoxelGrid> levels,
+                        OrdinateChoice choice, const sweep::Kernels* kernels, const RanksOfVolume* ranks,
+                        SweepPipeline::AtOnce at_once, std::optional<OrdinateChoice> sources);
   void pack_sides(std::span<const PassageFace> passages);
+  void sweep_turn(int octant, const Turn& turn, RadianceLeaves* leaves);
+  void sweep_inside(int octant, const Turn& turn);
+  static SweepPipeline::AtOnce with_inner_grids(const Cascade* cascade, size_t face_floats,
+                                                SweepPipeline::AtOnce at_once);
   void make_inflow(const Sky& sky, Angles& angles) const;
   void fill_rim(SweepPipeline::Task task, int axis);
   void sweep(bool in_order, RadianceLeaves* leaves);
@@ -84,19 +110,22 @@ class OrdinatesTransportCpu : public TransportCpu {
   size_t face_floats() const { return face_floats(all_.batches[0].octets); }
   static size_t face_floats(int octets) { return sweep::kBlockFace * size_t(octets) * sweep::kOctet; }
 
-  const VoxelGrid& voxels_;
+  VolumeSides all_sides_;
+  const VoxelGrid& voxels_;  // the outermost grid, or the only one
+  const Cascade* cascade_;   // null: one grid
   sweep::Kernels kernels_;
   Angles all_;
   std::optional<Angles> sources_;
   bool of_sources_ = false;
   size_t batch_ = 0;  // of angles(), that is swept
   SweepPipeline pipeline_;
+  std::optional<NestedFaces> nested_;  // of a cascade
   bool streams_in_ = false;
-  // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in voxels_.
+  // Sides in the order of blocks, so that those of a block lie together; side_[i] is the side's number in all_sides_.
   // Faces of passages are packed as sides, too, that send nothing and keep nothing: kNoSide.
   std::vector<sweep::BlockSides> block_sides_;
-  std::vector<int> sides_of_block_;   // of the part: index into block_sides_, or -1
-  std::vector<unsigned char> sends_;  // by block_sides_: whether any side of the block sends
+  std::vector<std::vector<int>> sides_of_block_;  // by level, of the part: index into block_sides_, or -1
+  std::vector<unsigned char> sends_;              // by block_sides_: whether any side of the block sends
   std::vector<std::uint32_t> side_;
   std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> sent_;     // w: 1 - tau
   std::vector<glm::vec4, tbb::cache_aligned_allocator<glm::vec4>> arrived_;  // 4 a side, zero between sweeps

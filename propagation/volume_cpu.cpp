@@ -9,10 +9,12 @@
 #include <cstring>
 #include <utility>
 
+#include "core/error.h"
 #include "core/surface.h"
 #include "propagation/ordinates.h"
 #include "propagation/transport_conservative_cpu.h"
 #include "propagation/transport_ordinates_cpu.h"
+#include "voxel/cascade_voxels.h"
 #include "voxel/voxelize_cpu.h"
 #include "voxel/white_pockets.h"
 
@@ -41,6 +43,10 @@ size_t side_irradiance_bytes(size_t sides) { return 2 * sizeof(glm::vec4) * side
 bool same_sides(const VoxelGrid& a, const VoxelGrid& b) {
   return a.side_count() == b.side_count() &&
          std::memcmp(a.sides().data(), b.sides().data(), a.side_count() * sizeof(shared::Side)) == 0;
+}
+bool same_sides(const std::vector<VoxelGrid>& a, const std::vector<VoxelGrid>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const VoxelGrid& one, const VoxelGrid& other) { return same_sides(one, other); });
 }
 
 /// The same scene in cells of twice the edge: the coarse part of `conservative`.
@@ -107,6 +113,31 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
          ConservativeTransportCpu::bytes_for(half, scheme.sh_order, coarse) + sizeof(glm::vec4) * coarse.sides;
 }
 
+size_t bytes_expected_cpu(const Scene& scene, const Cascade& cascade, const VolumeOptions& options) {
+  if (cascade.levels() == 1)
+    return bytes_expected_cpu(scene, cascade.grids[0], options, expected_sides(scene, cascade.grids[0]));
+  size_t bytes = voxelization_mipmaps(scene).bytes();
+  ExpectedSides all{};
+  for (size_t level = 0; level < cascade.levels(); ++level) {
+    const Grid& grid = cascade.grids[level];
+    std::vector<std::uint32_t> by_block;
+    const BlockBox blocks{glm::ivec3(0), leaf_blocks(grid)};
+    expected_sides(scene, grid, blocks, &by_block);
+    ExpectedSides own{};
+    for (size_t i = 0; i < by_block.size(); ++i) {
+      if (by_block[i] == 0 || cascade.covers(level, blocks.block(i))) continue;
+      own.sides += by_block[i];
+      own.blocks += 1;
+    }
+    bytes += VoxelGrid::bytes_for(grid, own.sides, own.blocks);
+    all.sides += own.sides;
+    all.blocks += own.blocks;
+  }
+  return bytes + 2 * sizeof(glm::vec4) * all.sides + BouncesCpu::bytes_for(all.sides) +
+         side_irradiance_bytes(all.sides) +
+         OrdinatesTransportCpu::bytes_for(cascade, choose_ordinates(cascade.finest_cells(), options.scheme), all);
+}
+
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const RanksOfVolume& ranks) {
   const SchemeOptions& scheme = options.scheme;
@@ -126,22 +157,25 @@ size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOpti
 }
 
 VolumeCpu::VolumeCpu(const Scene& scene, const VolumeOptions& options, const Ranks* ranks)
-    : scene_(scene),
-      options_(options),
-      grid_(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box)),
-      rules_(bounce_rules(options, scene)),
-      mipmaps_(voxelization_mipmaps(scene)) {
+    : scene_(scene), options_(options), rules_(bounce_rules(options, scene)), mipmaps_(voxelization_mipmaps(scene)) {
+  set_grid();
   if (ranks != nullptr && ranks->count() > 1) {
     refuse_of_ranks(options);
     share_out(*ranks);
   }
   if (options.scheme.scheme == Scheme::ordinates)
-    ordinate_set(choose_ordinates(grid_.cells, options.scheme).directions);
+    ordinate_set(choose_ordinates(cascade_.finest_cells(), options.scheme).directions);
   if (options.memory_limit)
-    refuse_above_limit(options,
-                       ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_)
-                              : bytes_expected_cpu(scene, grid_, options, expected_sides(scene, grid_)),
-                       "CPU");
+    refuse_above_limit(
+        options,
+        ranks_ ? bytes_expected_cpu(scene, grid_, options, *ranks_) : bytes_expected_cpu(scene, cascade_, options),
+        "CPU");
+}
+
+void VolumeCpu::set_grid() {
+  cascade_ = make_cascade(make_grid(scene_, options_.grid_cells, options_.grid_shift_cells, options_.grid_box),
+                          options_.cascade);
+  grid_ = cascade_.grids.front();
 }
 
 /// What each needs is asked of all, so that all decide alike.
@@ -173,10 +207,18 @@ void VolumeCpu::scene_moved() {
 void VolumeCpu::shift_grid(glm::vec3 cells) {
   if (cells == options_.grid_shift_cells) return;
   options_.grid_shift_cells = cells;
-  grid_ = make_grid(scene_, options_.grid_cells, cells, options_.grid_box);
+  set_grid();
   if (ranks_) share_out(ranks_->ranks);
   cells_ = {};
   shifted_ = true;
+}
+
+void VolumeCpu::move_cascade(glm::vec3 around) {
+  if (!options_.cascade.nested()) return;
+  const Cascade before = cascade_;
+  options_.cascade.around = around;
+  set_grid();
+  shifted_ = shifted_ || !same_cascade(before, cascade_);
 }
 
 VolumeCpu::~VolumeCpu() = default;
@@ -190,33 +232,50 @@ void VolumeCpu::voxelize_half(bool white) {
   if (white) bound_white_pockets(half_voxels_, half_ranks_ ? &*half_ranks_ : nullptr);
 }
 
+std::vector<VoxelGrid> VolumeCpu::voxelized(bool white) {
+  if (cascade_.levels() > 1) {
+    pocket_cells_ = 0;
+    return voxelize_cascade(scene_, cascade_, mipmaps_, white ? &pocket_cells_ : nullptr);
+  }
+  std::vector<VoxelGrid> one;
+  one.push_back(ranks_ ? voxelize_cpu(scene_, grid_, mipmaps_, *ranks_) : voxelize_cpu(scene_, grid_, mipmaps_));
+  if (white) pocket_cells_ = bound_white_pockets(one.front(), ranks());
+  return one;
+}
+
+std::unique_ptr<TransportCpu> VolumeCpu::transport() const {
+  if (cascade_.levels() > 1) {
+    const glm::ivec3 cells = cascade_.finest_cells();
+    return std::make_unique<OrdinatesTransportCpu>(cascade_, levels_, choose_ordinates(cells, options_.scheme),
+                                                   choose_source_ordinates(cells, options_.scheme));
+  }
+  return make_transport(voxels(), options_.scheme, has_coarse_part() ? &half_voxels_ : nullptr, ranks(),
+                        half_ranks_ ? &*half_ranks_ : nullptr);
+}
+
 void VolumeCpu::voxelize() {
   const bool papers = !carries_sides(options_.scheme.scheme);
   const bool white = may_have_white_pockets(rules_.largest_albedo);
-  VoxelGrid fresh = ranks_ ? voxelize_cpu(scene_, grid_, mipmaps_, *ranks_) : voxelize_cpu(scene_, grid_, mipmaps_);
-  if (white) pocket_cells_ = bound_white_pockets(fresh, ranks());
+  std::vector<VoxelGrid> fresh = voxelized(white);
   const bool coarse = has_coarse_part();
   // A scene that stands still keeps its transport, with what is in flight in it. What moves may change cells, or the
   // coarse grid's sides, and no side.
   const bool moved = std::exchange(moved_, false);
   if (moved && !papers) cells_ = {};  // made on first use
   const bool only_sides_count = (!moved || !(coarse || papers)) && !std::exchange(shifted_, false);
-  if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, voxels_)) return;
-  voxels_ = std::move(fresh);
+  if ((bounces_ || pulse_) && only_sides_count && same_sides(fresh, levels_)) return;
+  levels_.resize(fresh.size());
+  std::move(fresh.begin(), fresh.end(), levels_.begin());  // voxels() stays where it is
   passages_are_old_ = true;
-  if (ranks_) halo_.emplace(*ranks_, voxels_);
+  if (ranks_) halo_.emplace(*ranks_, voxels());
   if (coarse) voxelize_half(white);
   if (papers) {
     cells_ = cell_volumes_cpu(scene_, grid_, mipmaps_);
-    pulse_ = std::make_unique<PulseVolumeCpu>(voxels_, cells_, options_.scheme);
+    pulse_ = std::make_unique<PulseVolumeCpu>(voxels(), cells_, options_.scheme);
+  } else if (bounces_) {
+    bounces_->set_transport(transport());
   } else {
-    auto transport = make_transport(voxels_, options_.scheme, coarse ? &half_voxels_ : nullptr, ranks(),
-                                    half_ranks_ ? &*half_ranks_ : nullptr);
-    if (bounces_) {
-      bounces_->set_transport(std::move(transport));
-    } else {
-      bounces_ = std::make_unique<BouncesCpu>(std::move(transport), ranks_ ? &ranks_->ranks : nullptr);
-    }
+    bounces_ = std::make_unique<BouncesCpu>(transport(), ranks_ ? &ranks_->ranks : nullptr);
   }
 }
 
@@ -226,14 +285,14 @@ void VolumeCpu::set_passages(std::span<const PassageFace> faces) {
 }
 
 void VolumeCpu::light_in(SideFlux flux) {
-  assert(flux.punctual.size() == voxels_.side_count() && flux.emitted.size() == voxels_.side_count());
+  assert(flux.punctual.size() == sides().count() && flux.emitted.size() == sides().count());
   flux_ = std::move(flux);
 }
 
 void VolumeCpu::propagate() {
   if (bounces_) {
     bounces_->set_checkpoint(checkpoint_);
-    report_ = bounces_->run(voxels_, flux_, flux_.emits, rules_, streaming_sky(scene_, options_));
+    report_ = bounces_->run(sides(), flux_, flux_.emits, rules_, streaming_sky(scene_, options_));
     return;
   }
   std::vector<glm::vec4> all = flux_.punctual;
@@ -244,12 +303,17 @@ void VolumeCpu::propagate() {
 
 void VolumeCpu::irradiate() {
   if (!bounces_) return;
-  irradiance_ = side_irradiance(voxels_, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
-  if (options_.source == VolumeOptions::Source::lights || !flux_.emits) return;
-  // The first arrival in the volume is emission's bounce 1.
-  for (size_t i = 0; i < irradiance_.indirect.size(); ++i) {
-    irradiance_.indirect[i] += glm::vec4(glm::vec3(irradiance_.direct[i]), 0.0f);
-    irradiance_.direct[i] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+  const VolumeSides all = sides();
+  irradiance_.resize(all.levels());
+  for (size_t level = 0; level < all.levels(); ++level) {
+    SideIrradiance& own = irradiance_[level];
+    own = side_irradiance_of_level(all, level, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
+    if (options_.source == VolumeOptions::Source::lights || !flux_.emits) continue;
+    // The first arrival in the volume is emission's bounce 1.
+    for (size_t i = 0; i < own.indirect.size(); ++i) {
+      own.indirect[i] += glm::vec4(glm::vec3(own.direct[i]), 0.0f);
+      own.direct[i] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    }
   }
 }
 
@@ -260,18 +324,20 @@ const CellVolumes& VolumeCpu::cells() {
 }
 
 RadianceVolume VolumeCpu::radiance() const {
+  if (cascade_.levels() > 1) throw Error(ExitCode::usage, "--cascades: nested grids have no radiance in free space");
   if (bounces_) bounces_->transport().stream_in(streaming_sky(scene_, options_));
-  RadianceVolume volume = pulse_ ? pulse_->radiance() : bounces_->transport().radiance(bounces_->sent(voxels_, flux_));
+  RadianceVolume volume = pulse_ ? pulse_->radiance() : bounces_->transport().radiance(bounces_->sent(voxels(), flux_));
   if (bounces_) bounces_->transport().stream_in(nullptr);
   for (auto& grid : volume.sh) grid->setTransform(world_from_index(grid_, scene_.world_origin));
   return volume;
 }
 
 size_t VolumeCpu::bytes() const {
-  size_t sum = mipmaps_.bytes() + voxels_.bytes() + half_voxels_.bytes();
+  size_t sum = mipmaps_.bytes() + half_voxels_.bytes();
+  for (const VoxelGrid& level : levels_) sum += level.bytes();
   sum += (flux_.emitted.size() + flux_.punctual.size()) * sizeof(glm::vec4);
-  if (bounces_) sum += bounces_->transport().bytes() + BouncesCpu::bytes_for(voxels_.side_count());
-  sum += side_irradiance_bytes(irradiance_.indirect.size());
+  if (bounces_) sum += bounces_->transport().bytes() + BouncesCpu::bytes_for(sides().count());
+  for (const SideIrradiance& irradiance : irradiance_) sum += side_irradiance_bytes(irradiance.indirect.size());
   if (pulse_) sum += pulse_->bytes() + cell_volumes_bytes(cells_);
   return sum;
 }

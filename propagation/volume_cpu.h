@@ -38,9 +38,12 @@ class VolumeCpu {
   /// carry sides.
   void set_checkpoint(BounceCheckpoint* checkpoint) { checkpoint_ = checkpoint; }
 
+  /// Of a volume of nested grids: they lie around that point [m] from the next voxelize() on (CascadeOptions::around).
+  void move_cascade(glm::vec3 around);
+
   // In this order:
   void voxelize();
-  /// @param flux  of the sides of voxels().
+  /// @param flux  of sides().
   void light_in(SideFlux flux);
   /// Before propagate(): gaps between rooms, as wide as they are (light_in/narrow_passages.h). Holds until cells
   /// change.
@@ -52,17 +55,23 @@ class VolumeCpu {
 
   const Grid& grid() const { return grid_; }
   const VolumeOptions& options() const { return options_; }
-  const VoxelGrid& voxels() const { return voxels_; }
+  /// The outermost grid's, or the only one's.
+  const VoxelGrid& voxels() const { return levels_.front(); }
+  /// Of nested grids, outermost first.
+  const Cascade& cascade() const { return cascade_; }
+  std::span<const VoxelGrid> levels() const { return levels_; }
+  VolumeSides sides() const { return {cascade_, levels_}; }
   const CellVolumes& cells();  // voxelized now if the scheme did not need them
   /// Null where there is one rank.
   const RanksOfVolume* ranks() const { return ranks_ ? &*ranks_ : nullptr; }
   const SideFlux& flux() const { return flux_; }
   /// Of schemes that carry sides. After a first bounce on the screen `indirect` holds bounces 2 ... n of punctual light
   /// and 1 ... n of emission, `direct` nothing.
-  const SideIrradiance& irradiance() const { return irradiance_; }
+  const SideIrradiance& irradiance(size_t level = 0) const { return irradiance_[level]; }
+  const std::vector<SideIrradiance>& irradiance_of_levels() const { return irradiance_; }
   const BounceReport& report() const { return report_; }
   size_t pocket_cells() const { return pocket_cells_; }  // bound_white_pockets()
-  /// Radiance in free space, with the file's world transform. Costs a pass over the volume.
+  /// Radiance in free space, with the file's world transform. Costs a pass over the volume. Of one grid.
   RadianceVolume radiance() const;
   /// Whether the transport ends pulses on a coarser grid (SchemeOptions::coarse_start).
   bool has_coarse_part() const;
@@ -70,21 +79,26 @@ class VolumeCpu {
 
  private:
   void share_out(const Ranks& ranks);
+  void set_grid();
+  std::vector<VoxelGrid> voxelized(bool white);
+  std::unique_ptr<TransportCpu> transport() const;
   void voxelize_half(bool white);
 
   const Scene& scene_;
   VolumeOptions options_;
   Grid grid_;
+  Cascade cascade_;
   BounceRules rules_;
   Mipmaps mipmaps_;  // of the scene, for all its frames
   std::optional<RanksOfVolume> ranks_, half_ranks_;
-  std::optional<SideHalo> halo_;  // of voxels_
-  VoxelGrid voxels_, half_voxels_;
+  std::optional<SideHalo> halo_;                               // of voxels()
+  std::vector<VoxelGrid> levels_ = std::vector<VoxelGrid>(1);  // of the cascade
+  VoxelGrid half_voxels_;
   CellVolumes cells_;
   SideFlux flux_;
   std::unique_ptr<BouncesCpu> bounces_;
   std::unique_ptr<PulseVolumeCpu> pulse_;
-  SideIrradiance irradiance_;
+  std::vector<SideIrradiance> irradiance_ = std::vector<SideIrradiance>(1);  // by level
   BounceReport report_;
   size_t pocket_cells_ = 0;
   BounceCheckpoint* checkpoint_ = nullptr;
@@ -96,6 +110,8 @@ class VolumeCpu {
 /// refused before it is taken: the sum of what its parts say of themselves.
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const ExpectedSides& expected);
+/// The same of nested grids.
+size_t bytes_expected_cpu(const Scene& scene, const Cascade& cascade, const VolumeOptions& options);
 /// The same of the volume's part that this rank has.
 size_t bytes_expected_cpu(const Scene& scene, const Grid& grid, const VolumeOptions& options,
                           const RanksOfVolume& ranks);

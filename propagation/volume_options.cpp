@@ -40,6 +40,7 @@ BounceRules bounce_rules(const VolumeOptions& options, const Scene& scene) {
 }
 
 bool lights_by_rays(const Scene& scene, const VolumeOptions& o) {
+  if (o.cascade.nested()) return true;
   if (o.first_light != VolumeOptions::FirstLight::automatic) return o.first_light == VolumeOptions::FirstLight::rays;
   size_t triangles = 0;
   for (const Mesh& mesh : scene.meshes) triangles += mesh.triangles.size();
@@ -52,6 +53,7 @@ const Sky* streaming_sky(const Scene& scene, const VolumeOptions& o) {
 }
 
 void refuse_on_gpu(const VolumeOptions& o) {
+  if (o.cascade.nested()) throw Error(ExitCode::usage, "--cascades: nested grids are the CPU's; use --backend cpu");
   if (o.scheme.directions.value_or(0) > VolumeOptions::kMaxDirectionsGpu)
     throw Error(ExitCode::over_limit, fmt::format("--directions {}: the GPU takes {}; use --backend cpu",
                                                   *o.scheme.directions, VolumeOptions::kMaxDirectionsGpu));
@@ -68,6 +70,10 @@ void refuse_on_gpu(const VolumeOptions& o) {
 }
 
 void refuse_on_cpu(const VolumeOptions& o) {
+  if (o.cascade.nested() && o.scheme.scheme != Scheme::ordinates)
+    throw Error(ExitCode::usage, "--cascades: nested grids are for --scheme ordinates");
+  if (o.cascade.nested() && o.first_light == VolumeOptions::FirstLight::faces)
+    throw Error(ExitCode::usage, "--cascades: light finds nested grids by rays; not with --first-light faces");
   if (o.voxelization.method != VoxelizationMethod::sliced || o.voxelization.interleave)
     throw Error(ExitCode::usage,
                 "voxel.method=single_pass, voxel.interleave=1: the CPU slices along three axes; use --backend gpu");
@@ -83,6 +89,7 @@ void refuse_of_ranks(const VolumeOptions& o) {
     throw Error(ExitCode::usage,
                 "the papers' schemes run as one rank; of several there are --scheme ordinates and "
                 "conservative");
+  if (o.cascade.nested()) throw Error(ExitCode::usage, "--cascades: nested grids run as one rank");
 }
 
 void warn_of_answer(const std::string& scene, const VolumeOptions& o, const BounceReport& report, size_t pocket_cells,

@@ -7,6 +7,7 @@
 #include "core/scene.h"
 #include "propagation/bounce_rules.h"
 #include "propagation/scheme.h"
+#include "voxel/cascade.h"
 #include "voxel/grid.h"
 #include "voxel/voxelization_options.h"
 
@@ -20,6 +21,7 @@ struct VolumeOptions {
   glm::vec3 grid_shift_cells{0.0f};  // for tests (voxel/grid.h)
   bool grid_jitter = false;          // of pictures that are averaged each has its grid elsewhere; on the CPU
   std::optional<GridBox> grid_box;   // what the grid lies around; none: the scene
+  CascadeOptions cascade;            // nested grids, inside of that one; of `ordinates` on the CPU
   SchemeOptions scheme;
   VoxelizationOptions voxelization;  // on the GPU
   std::optional<int> bounces;        // BounceRules

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/bench/against_path_tracing.h"
+#include "apps/bench/cascades.h"
 #include "apps/bench/cochran2007.h"
 #include "apps/bench/conservative.h"
 #include "apps/bench/dong2009.h"
@@ -67,6 +68,7 @@ struct BenchCommand {
   int run() const;
   void run_frames(nlohmann::json& results) const;
   void run_propagation(nlohmann::json& results) const;
+  void run_cascades(nlohmann::json& results) const;
   void run_voxelize(nlohmann::json& results) const;
   void run_cochran2007(nlohmann::json& results) const;
   void run_dong2009(nlohmann::json& results) const;
@@ -160,6 +162,15 @@ void BenchCommand::run_propagation(nlohmann::json& results) const {
   const auto& sparse = r["sparse_over_dense"];
   fmt::print("conservative atrium, first 16 passes: sparse {:.2f} ms a pass, dense {:.2f}: {:.1f} times faster\n",
              sparse["sparse_ms"].get<double>(), sparse["dense_ms"].get<double>(), sparse["speedup"].get<double>());
+}
+
+void BenchCommand::run_cascades(nlohmann::json& results) const {
+  set_quiet(true);
+  for (const std::string& name : scenes_or({"street"})) {
+    nlohmann::json result = bench_cascades(scene(name), CascadesBenchOptions{});
+    show(cascades_table(result));
+    results["cascades"].push_back(std::move(result));
+  }
 }
 
 void BenchCommand::run_voxelize(nlohmann::json& results) const {
@@ -289,6 +300,7 @@ struct Benchmark {
 constexpr Benchmark kBenchmarks[] = {{"frame", &BenchCommand::run_frames},
                                      {"propagation", &BenchCommand::run_propagation},
                                      {"voxelize", &BenchCommand::run_voxelize},
+                                     {"cascades", &BenchCommand::run_cascades},
                                      {"cochran2007", &BenchCommand::run_cochran2007},
                                      {"dong2009", &BenchCommand::run_dong2009},
                                      {"nichols2010", &BenchCommand::run_nichols2010},
@@ -332,7 +344,8 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "times, medians: 'frame' renders cornell and atrium, pass by pass; 'propagation' and 'voxelize' "
       "time the CPU's volume against copying memory and OpenVDB; 'cochran2007', 'dong2009' and 'nichols2010' repeat "
       "those papers' tables and curves, 'nichols2010_area' that thesis' figures on area lights; 'lattice' measures the "
-      "wave lattice and imperfect maps; 'against-path-tracing' tells how long "
+      "wave lattice and imperfect maps; 'cascades' holds nested grids against one; 'against-path-tracing' tells how "
+      "long "
       "path tracing takes to the error of --gi hybrid, 'split' which of hybrid's terms its error is in; "
       "'gpu' measures this OpenGL device: every pass, the volume against copying, frame time against error; "
       "'mpi', under mpirun, measures sweeps over ranks beside what a model says of them");
@@ -348,9 +361,9 @@ void add_bench_command(CLI::App& app, int& exit_code) {
                    "512 and 1024]")
       ->check(CLI::Range(16, 8192));
   command
-      ->add_option(
-          "--scene", options->scenes,
-          "scenes by name, of frame, dong2009, nichols2010, lattice, split and against-path-tracing [their own]")
+      ->add_option("--scene", options->scenes,
+                   "scenes by name, of frame, cascades, dong2009, nichols2010, lattice, split and against-path-tracing "
+                   "[their own]")
       ->type_name("NAME");
   command->add_option("--curve-vpls", options->curve_lights, "dong2009: numbers of virtual lights of its curve")
       ->check(CLI::Range(2, 65536))

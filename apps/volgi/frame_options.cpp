@@ -65,6 +65,7 @@ void FrameCommandOptions::add_to(CLI::App& command) {
       ->check(CLI::Range(0.001, 16.0))
       ->capture_default_str();
   volume.add_to(command);
+  volume.add_cascades_to(command);
   for (const screen::Parameter* p : screen::parameters()) {
     if (p->flag == nullptr) continue;
     const auto keep = [this, p](const std::string& text) {

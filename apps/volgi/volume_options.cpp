@@ -37,6 +37,23 @@ const std::map<std::string, VolumeOptions::FirstLight> kFirstLights = {{"auto", 
                                                                        {"rays", VolumeOptions::FirstLight::rays},
                                                                        {"faces", VolumeOptions::FirstLight::faces}};
 
+/// @throws Error(usage) for what is not six numbers.
+GridBox cascade_box(const std::string& text, const Scene& scene) {
+  std::vector<double> corners;
+  const char *at = text.data(), *end = text.data() + text.size();
+  for (double number = 0.0; at < end;) {
+    const auto [stop, error] = std::from_chars(at, end, number);
+    const bool more = stop < end && *stop == ',';
+    if (error != std::errc() || (stop != end && !more) || (more && stop + 1 == end)) break;
+    corners.push_back(number);
+    at = more ? stop + 1 : stop;
+  }
+  if (at != end || corners.size() != 6)
+    throw Error(ExitCode::usage, "--cascade " + text + ": give two corners, X0,Y0,Z0,X1,Y1,Z1");
+  const glm::dvec3 a(corners[0], corners[1], corners[2]), b(corners[3], corners[4], corners[5]);
+  return {glm::vec3(glm::min(a, b) - scene.world_origin), glm::vec3(glm::max(a, b) - scene.world_origin)};
+}
+
 float longest_edge(const GridBox& box) {
   const glm::vec3 e = box.max - box.min;
   return std::max({e.x, e.y, e.z});
@@ -72,7 +89,8 @@ void warn_of_large_cells(const Scene& scene, const GridBox& reached, const Volum
   constexpr float LEAST_CELLS = 4.0f;  // along the shortest edge; fewer cannot hold a room (docs/theory.md#ordinates)
   const glm::vec3 e = reached.max - reached.min;
   const float shortest = std::min({e.x, e.y, e.z});
-  const float cell = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box).cell_size_m;
+  const Grid grid = make_grid(scene, options.grid_cells, glm::vec3(0.0f), options.grid_box);
+  const float cell = make_cascade(grid, options.cascade).grids.back().cell_size_m;
   if (shortest < 1e-3f * longest_edge(reached) || shortest >= LEAST_CELLS * cell) return;  // a plane has no height
   warn_once(
       fmt::format("{}: cells of {:.2g} m for a place of {:.2g} x {:.2g} x {:.2g} m; its light will be wrong: a larger "
@@ -139,10 +157,30 @@ void VolumeCommandOptions::add_to(CLI::App& command) {
   command.add_option("--threads", threads, "threads of the CPU (all)")->check(CLI::Range(1, 1024));
 }
 
+void VolumeCommandOptions::add_cascades_to(CLI::App& command) {
+  CLI::Option* around = command.add_option(
+      "--cascades", cascades,
+      "nested grids around the camera, that of --grid among them: each next one inside has as many cells, half as "
+      "long; on the CPU, of 'ordinates'; they move with the camera by 8 cells of the grid around (1)");
+  around->check(CLI::Range(1, CascadeOptions::kMostLevels));
+  command
+      .add_option(
+          "--cascade", cascade,
+          "X0,Y0,Z0,X1,Y1,Z1: box of a nested grid in the file's frame [m] instead, made up to whole blocks of 8^3 "
+          "cells of the grid around it; once for each, from outside in")
+      ->excludes(around)
+      ->allow_extra_args(false);
+  command
+      .add_option("--cascade-ratio", cascade_ratio, "edge of a grid's cells over that of the next one inside, 2 or 4")
+      ->check(CLI::IsMember({2, 4}))
+      ->capture_default_str();
+}
+
 bool VolumeCommandOptions::given() const {
   const VolumeCommandOptions usual;
   return scheme != usual.scheme || first_light != usual.first_light || bounces || iterations || directions ||
-         sh_order != usual.sh_order || grid_cells || !bounds.empty() || !memory_limit.empty();
+         sh_order != usual.sh_order || grid_cells || !bounds.empty() || !memory_limit.empty() || cascades ||
+         !cascade.empty();
 }
 
 VolumeOptions VolumeCommandOptions::volume_options() const {
@@ -154,6 +192,16 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
   o.bounces = bounces;
   o.iterations = iterations;
   o.first_light = kFirstLights.at(first_light);
+  o.cascade.levels = cascades.value_or(1);
+  o.cascade.ratio = cascade_ratio;
+  if (!cascade.empty()) {
+    o.cascade.levels = 1 + int(cascade.size());
+    o.cascade.by_boxes = true;  // fit_box() says where
+    if (o.cascade.levels > CascadeOptions::kMostLevels)
+      throw Error(ExitCode::usage, fmt::format("--cascade: {} boxes at most", CascadeOptions::kMostLevels - 1));
+  }
+  if (o.cascade.nested() && scheme != "ordinates")
+    throw Error(ExitCode::usage, "--cascades belong to --scheme ordinates");
   if (!memory_limit.empty()) o.memory_limit = parse_bytes(memory_limit);
   if (directions && scheme != "ordinates") throw Error(ExitCode::usage, "--directions belongs to --scheme ordinates");
   if (sh_order == 2 && scheme == "ordinates")
@@ -164,6 +212,8 @@ VolumeOptions VolumeCommandOptions::volume_options() const {
 
 std::optional<GridBox> VolumeCommandOptions::fit_box(const Scene& scene, const std::optional<glm::vec3>& eye,
                                                      VolumeOptions& options) const {
+  if (eye) options.cascade.around = *eye;
+  for (size_t i = 0; i < cascade.size(); ++i) options.cascade.boxes[i] = cascade_box(cascade[i], scene);
   if (!bounds.empty()) {
     options.grid_box = box_of(bounds, scene);
     return {};

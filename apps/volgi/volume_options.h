@@ -20,14 +20,20 @@ struct VolumeCommandOptions {
   std::optional<int> grid_cells;
   std::vector<double> bounds;  // two corners in the file's frame [m]
   std::string memory_limit;    // bytes, with K, M or G
+  std::optional<int> cascades;
+  std::vector<std::string> cascade;  // boxes, X0,Y0,Z0,X1,Y1,Z1 in the file's frame [m]
+  int cascade_ratio = 2;
 
   void add_to(CLI::App& command);
+  /// --cascades, --cascade and --cascade-ratio, of commands that make pictures.
+  void add_cascades_to(CLI::App& command);
   /// Whether anything but threads was asked for.
   bool given() const;
   /// @throws Error(usage) for options that do not go together.
   VolumeOptions volume_options() const;
-  /// Puts the grid's box around --bounds; without it around what the camera (if there is one) and lamps reach
-  /// (reached_box()), where that is less than half as long as the scene, and says so.
+  /// Puts nested grids around the camera or where --cascade says, and the grid's box around --bounds; without it around
+  /// what the camera (if there is one) and lamps reach (reached_box()), where that is less than half as long as the
+  /// scene, and says so.
   /// @return what they reach. @throws Error(usage) for bounds that no part of the scene is in.
   std::optional<GridBox> fit_box(const Scene& scene, const std::optional<glm::vec3>& eye, VolumeOptions& options) const;
   /// The same without a camera, and where --grid is not given cells that suit the box (automatic_grid_cells()).

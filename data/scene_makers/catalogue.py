@@ -2,7 +2,7 @@
 from dataclasses import dataclass
 from typing import Callable
 
-from . import animal, arena, atrium, buildings, room, small
+from . import animal, arena, atrium, buildings, room, small, street
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,7 @@ SCENES = {
     'house': Entry(buildings.house, _exactly(4190), 4096, committed=False),
     'office': Entry(buildings.office, _exactly(1218), 512, committed=False),
     'steps': Entry(buildings.steps, _exactly(2400), 512, committed=False),
+    'street': Entry(street.street, _exactly(17028), 256, committed=False),
     'bunny': Entry(animal.bunny, _exactly(69462), 1024, committed=False, one_bounce_spp=1024),
     'animal17k': Entry(animal.animal17k, _exactly(16998), 512, committed=False),
 }

@@ -1,6 +1,7 @@
 #include "propagation/light_in/direct_light_cpu.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/visibility/light_flux.h"
 #include "propagation/light_in/face_light_cpu.h"
@@ -35,16 +36,18 @@ const EmbreeScene* DirectLightCpu::embree() const {
   return embree_.get();
 }
 
-SideFlux DirectLightCpu::flux(const VoxelGrid& voxels) const {
+SideFlux DirectLightCpu::flux(const VolumeSides& sides) const {
   SideFlux flux;
-  flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+  flux.emitted.assign(sides.count(), glm::vec4(0.0f));
   flux.punctual = flux.emitted;
-  const std::vector<FluxSample> pieces = emitter_pieces(scene_, voxels.grid());
+  const Grid grid = sides.finest_grid();
+  const std::vector<FluxSample> pieces = emitter_pieces(scene_, grid);
   flux.emits = !pieces.empty();
-  deposit(voxels, pieces, flux.emitted, flux.lost);
+  deposit(sides, pieces, flux.emitted, flux.lost);
   if (scene_.lights.empty()) return flux;
-  const int texels = light_texels(voxels.grid());
-  deposit(voxels, by_rays_ ? light_flux(*embree_, texels) : face_light(scene_, voxels, texels), flux.punctual,
+  assert(by_rays_ || sides.levels() == 1);
+  const int texels = light_texels(grid);
+  deposit(sides, by_rays_ ? light_flux(*embree_, texels) : face_light(scene_, sides.level(0), texels), flux.punctual,
           flux.lost);
   return flux;
 }
@@ -69,7 +72,7 @@ SideFlux DirectLightCpu::flux(const VoxelGrid& voxels, const RanksOfVolume& rank
 
 SideFlux direct_light(const Scene& scene, const VolumeCpu& volume) {
   const DirectLightCpu light(scene, lights_by_rays(scene, volume.options()));
-  return volume.ranks() != nullptr ? light.flux(volume.voxels(), *volume.ranks()) : light.flux(volume.voxels());
+  return volume.ranks() != nullptr ? light.flux(volume.voxels(), *volume.ranks()) : light.flux(volume.sides());
 }
 
 void run_with_direct_light(VolumeCpu& volume, const Scene& scene) {

@@ -20,7 +20,7 @@ class DirectLightCpu {
   /// The scene has moved, in place. Cost: Embree's tree on one thread, 1 ms for some 2000 triangles.
   void scene_moved();
   /// Cost: some 16 rays for each lit cell's face.
-  SideFlux flux(const VoxelGrid& voxels) const;
+  SideFlux flux(const VolumeSides& sides) const;
   /// All ranks, the rays shared out; each has the whole scene's tree, or the whole grid's faces.
   SideFlux flux(const VoxelGrid& voxels, const RanksOfVolume& ranks) const;
   /// Of the scene, made when it is asked for where there are no punctual lights. None of light by the grid's faces.

@@ -112,16 +112,16 @@ std::vector<Flight> flights(const EmbreeScene& embree, const VirtualLightsForSid
   return found;
 }
 
-SideFlux flux_after_first_bounce(const VoxelGrid& voxels, const EmbreeScene& embree, const VirtualLightsForSides& from,
+SideFlux flux_after_first_bounce(const VolumeSides& sides, const EmbreeScene& embree, const VirtualLightsForSides& from,
                                  bool emission_apart, std::optional<size_t> rays) {
   const size_t all = from.lights.size(), reflected = emission_apart ? size_t(from.reflected) : all;
-  const size_t count = rays.value_or(automatic_rays(voxels.side_count()));
+  const size_t count = rays.value_or(automatic_rays(sides.count()));
   SideFlux flux;
-  flux.emitted.assign(voxels.side_count(), glm::vec4(0.0f));
+  flux.emitted.assign(sides.count(), glm::vec4(0.0f));
   flux.punctual = flux.emitted;
   flux.emits = reflected < all;
-  deposit(voxels, reflected_flux(embree, from, 0, reflected, count), flux.punctual, flux.lost);
-  deposit(voxels, reflected_flux(embree, from, reflected, all, count), flux.emitted, flux.lost);
+  deposit(sides, reflected_flux(embree, from, 0, reflected, count), flux.punctual, flux.lost);
+  deposit(sides, reflected_flux(embree, from, reflected, all, count), flux.emitted, flux.lost);
   return flux;
 }
 

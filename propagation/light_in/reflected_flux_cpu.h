@@ -44,7 +44,7 @@ std::vector<Flight> flights(const EmbreeScene& embree, const VirtualLightsForSid
 /// Light in of a volume after a first bounce by virtual lights: A rho E of every side. @param emission_apart  where
 /// orders are counted: emission has one more, so what it brings goes in by itself; else all is `punctual`.
 /// @param rays  none: automatic_rays(). Twin: screen/bounces/volume/reflected_flux_gl.h, through cells.
-SideFlux flux_after_first_bounce(const VoxelGrid& voxels, const EmbreeScene& embree, const VirtualLightsForSides& from,
+SideFlux flux_after_first_bounce(const VolumeSides& sides, const EmbreeScene& embree, const VirtualLightsForSides& from,
                                  bool emission_apart, std::optional<size_t> rays = {});
 
 }  // namespace volgi

@@ -31,29 +31,46 @@ glm::vec3 irradiance_of(const VoxelGrid& voxels, const EmbreeScene& embree, size
 
 }  // namespace
 
-const std::vector<glm::vec4>& SideSkyCpu::irradiance(const VoxelGrid& voxels, const EmbreeScene& embree,
+namespace {
+
+bool same_sides(const VolumeSides& sides, const std::vector<shared::Side>& known) {
+  if (known.size() != sides.count()) return false;
+  for (size_t level = 0; level < sides.levels(); ++level) {
+    const VoxelGrid& voxels = sides.level(level);
+    if (std::memcmp(known.data() + sides.first(level), voxels.sides().data(),
+                    voxels.side_count() * sizeof(shared::Side)) != 0)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+const std::vector<glm::vec4>& SideSkyCpu::irradiance(const VolumeSides& sides, const EmbreeScene& embree,
                                                      std::span<const SkyLight> parts, int version, int sample) {
-  const size_t count = voxels.side_count();
-  const bool same = version == version_ && sample == sample_ && count == sides_.size() &&
-                    std::memcmp(sides_.data(), voxels.sides().data(), count * sizeof(shared::Side)) == 0;
-  if (same) return irradiance_;
+  if (version == version_ && sample == sample_ && same_sides(sides, sides_)) return irradiance_;
   version_ = version;
   sample_ = sample;
-  sides_.assign(voxels.sides().begin(), voxels.sides().end());
-  irradiance_.resize(count);
+  sides_.clear();
+  irradiance_.resize(sides.count());
   const int stride = std::max(int(parts.size()) / kRays, 1);
-  tbb::parallel_for(size_t(0), count, [&](size_t s) {
-    irradiance_[s] = glm::vec4(irradiance_of(voxels, embree, s, parts, stride, sample), 0.0f);
-  });
+  for (size_t level = 0; level < sides.levels(); ++level) {
+    const VoxelGrid& voxels = sides.level(level);
+    const size_t first = sides.first(level), count = voxels.side_count();
+    sides_.insert(sides_.end(), voxels.sides().begin(), voxels.sides().begin() + std::ptrdiff_t(count));
+    tbb::parallel_for(size_t(0), count, [&](size_t s) {
+      irradiance_[first + s] = glm::vec4(irradiance_of(voxels, embree, s, parts, stride, sample), 0.0f);
+    });
+  }
   return irradiance_;
 }
 
 // E is that of the surface's plane, so A is the side's own area, however it is tilted (docs/theory.md#light-in).
-void add_sky(const VoxelGrid& voxels, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux) {
-  assert(irradiance.size() == voxels.side_count());
+void add_sky(const VolumeSides& sides, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux) {
+  assert(irradiance.size() == sides.count());
   std::vector<glm::vec4>& into = apart ? flux.emitted : flux.punctual;
   for (size_t s = 0; s < irradiance.size(); ++s) {
-    const shared::Side& side = voxels.sides()[s];
+    const shared::Side& side = sides[s];
     into[s] += glm::vec4(glm::vec3(irradiance[s]) * side.albedo * side.area_m2, 0.0f);
   }
   if (apart) flux.emits = true;

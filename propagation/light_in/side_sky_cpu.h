@@ -7,7 +7,7 @@
 #include "core/sky.h"
 #include "core/visibility/embree_scene.h"
 #include "propagation/side_flux.h"
-#include "voxel/voxel_grid.h"
+#include "voxel/volume_sides.h"
 
 namespace volgi {
 
@@ -29,7 +29,7 @@ class SideSkyCpu {
   /// surface meets nothing. A side looks at every n-th part, n times as bright: neighbours look at others, and pixels
   /// take means over 3^3 cells. No result depends on the number of threads. Cost: kRays rays a side.
   /// @param version  of `parts`. @param sample  of pictures that are averaged: sides look at other parts.
-  const std::vector<glm::vec4>& irradiance(const VoxelGrid& voxels, const EmbreeScene& embree,
+  const std::vector<glm::vec4>& irradiance(const VolumeSides& sides, const EmbreeScene& embree,
                                            std::span<const SkyLight> parts, int version, int sample = 0);
   void scene_moved() { version_ = -1; }
   static constexpr int kRays = 64;
@@ -42,6 +42,6 @@ class SideSkyCpu {
 
 /// Adds what sides reflect of it to their flux. @param apart  where orders are counted: as emission, which has one
 /// order more.
-void add_sky(const VoxelGrid& voxels, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux);
+void add_sky(const VolumeSides& sides, std::span<const glm::vec4> irradiance, bool apart, SideFlux& flux);
 
 }  // namespace volgi

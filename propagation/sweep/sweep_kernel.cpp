@@ -3,7 +3,7 @@
 
 namespace volgi::sweep {
 
-Kernels baseline() { return {"baseline", kernel, fill_face}; }
+Kernels baseline() { return {"baseline", kernel, fill_face, refine_face, coarsen_face}; }
 
 Available available() {
   Available a;

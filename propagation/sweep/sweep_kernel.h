@@ -60,6 +60,13 @@ struct Kernels {
   Kernel (*kernel)(bool characteristic, int octets, bool radiance);
   /// The same lanes for all 64 places of a block's face.
   void (*fill_face)(int octets, const float* lanes, float* face);
+  /// A part of a block's face becomes a face of a block whose cells are 1/ratio as long: what goes through each place
+  /// is shared out evenly. @param part  which of the ratio x ratio parts, along cells of a row and rows, by flow.
+  void (*refine_face)(int octets, int ratio, const int (&part)[2], const float* coarse, float* fine);
+  /// And back: what goes through is added up. @param weights  of the fine face's places, cells of a row fastest; null:
+  /// all are 1. @param coarse  added to.
+  void (*coarsen_face)(int octets, int ratio, const int (&part)[2], const float* fine, const float* weights,
+                       float* coarse);
 };
 
 Kernels baseline();

@@ -3,6 +3,6 @@
 
 namespace volgi::sweep {
 
-Kernels avx2() { return {"avx2", kernel, fill_face}; }
+Kernels avx2() { return {"avx2", kernel, fill_face, refine_face, coarsen_face}; }
 
 }  // namespace volgi::sweep

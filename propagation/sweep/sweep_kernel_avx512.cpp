@@ -3,6 +3,6 @@
 
 namespace volgi::sweep {
 
-Kernels avx512() { return {"avx512", kernel, fill_face}; }
+Kernels avx512() { return {"avx512", kernel, fill_face, refine_face, coarsen_face}; }
 
 }  // namespace volgi::sweep

@@ -305,6 +305,57 @@ void fill_face(int octets, const float* lanes, float* face) {
   }
 }
 
+// Calls f(octets' template argument) for a number of octets.
+template <class F>
+void with_octets(int octets, const F& f) {
+  switch (octets) {
+    case 1:
+      return f.template operator()<1>();
+    case 2:
+      return f.template operator()<2>();
+    case 3:
+      return f.template operator()<3>();
+    case 4:
+      return f.template operator()<4>();
+    default:
+      return f.template operator()<6>();
+  }
+}
+
+// Calls f.operator()<kLanes>(place in the coarse face, place in the fine face, number of the fine place).
+template <int kOctets, class F>
+VOLGI_INLINE void for_fine_places(int ratio, const int (&part)[2], const F& f) {
+  constexpr int row_size = kBlockCells * kOctets * kOctet;
+  for (int row = 0; row < kBlockCells; ++row) {
+    const int coarse_row = (kBlockCells * part[1] + row) / ratio;
+    for_octets<kOctets>([&]<int kLanes>(Width<kLanes>, int octet) {
+      for (int i = 0; i < kBlockCells; ++i) {
+        const int coarse_i = (kBlockCells * part[0] + i) / ratio;
+        f.template operator()<kLanes>(coarse_row * row_size + place_in_row<kLanes>(octet, coarse_i),
+                                      row * row_size + place_in_row<kLanes>(octet, i), row * kBlockCells + i);
+      }
+    });
+  }
+}
+
+void refine_face(int octets, int ratio, const int (&part)[2], const float* coarse, float* fine) {
+  const float share = 1.0f / float(ratio * ratio);
+  with_octets(octets, [&]<int kOctets>() {
+    for_fine_places<kOctets>(ratio, part, [&]<int kLanes>(int from, int to, int) {
+      store<kLanes>(fine + to, share * load<kLanes>(coarse + from));
+    });
+  });
+}
+
+void coarsen_face(int octets, int ratio, const int (&part)[2], const float* fine, const float* weights, float* coarse) {
+  with_octets(octets, [&]<int kOctets>() {
+    for_fine_places<kOctets>(ratio, part, [&]<int kLanes>(int to, int from, int place) {
+      const float weight = weights != nullptr ? weights[place] : 1.0f;
+      store<kLanes>(coarse + to, load<kLanes>(coarse + to) + weight * load<kLanes>(fine + from));
+    });
+  });
+}
+
 Kernel kernel(bool characteristic, int octets, bool radiance) {
   return characteristic ? kernel_of<Characteristic>(octets, radiance) : kernel_of<Step>(octets, radiance);
 }

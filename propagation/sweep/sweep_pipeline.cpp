@@ -28,6 +28,7 @@ int SweepPipeline::chunk_blocks_of(const RanksOfVolume* ranks, const BlockBox& p
 }
 
 int SweepPipeline::slots_of(const RanksOfVolume* ranks, size_t bytes_of_octant, AtOnce at_once) {
+  if (ranks == nullptr && at_once.of_one > 0) return at_once.of_one;
   if (ranks == nullptr) return 8 * bytes_of_octant > at_once.many_flows ? 1 : 8;
   if (at_once.of_ranks > 0) return at_once.of_ranks;
   if (ranks->lean) return 2;
@@ -256,9 +257,13 @@ size_t SweepPipeline::octant_bytes(const RanksOfVolume* ranks, const BlockBox& p
   return bytes;
 }
 
-size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+size_t SweepPipeline::bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once) {
   const size_t bytes = octant_bytes(ranks, part, face_floats);
-  return size_t(slots_of(ranks, bytes, AtOnce())) * bytes;
+  return size_t(slots_of(ranks, bytes, at_once)) * bytes;
+}
+
+int SweepPipeline::octants_at_once(const BlockBox& part, size_t face_floats, AtOnce at_once) {
+  return slots_of(nullptr, octant_bytes(nullptr, part, face_floats), at_once);
 }
 
 size_t SweepPipeline::bytes() const {

@@ -48,6 +48,7 @@ class SweepPipeline {
   struct AtOnce {
     size_t many_flows = kManyFlows;
     int of_ranks = 0;  // 0: as above
+    int of_one = 0;    // rank; 0: as above
   };
 
   /// @param ranks  null: there is one. @param face_floats  of a block's face. @param at_once  for tests.
@@ -56,6 +57,8 @@ class SweepPipeline {
   int chunks() const { return chunks_; }
   int chunk_blocks() const { return chunk_blocks_; }
   int octants_at_once() const { return int(slots_.size()); }
+  /// Which of the octants under way at once this one is: 0 ... octants_at_once() - 1, or -1.
+  int slot(int octant) const { return slot_[size_t(octant)]; }
   bool alone() const { return ranks_ == nullptr; }
   /// All ranks: a new sweep of all octants. @param in_order  one octant after the other, also where they need not.
   void start(bool in_order);
@@ -74,7 +77,12 @@ class SweepPipeline {
   void end();
 
   size_t bytes() const;
-  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats);
+  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats, AtOnce at_once);
+  static size_t bytes_for(const RanksOfVolume* ranks, const BlockBox& part, size_t face_floats) {
+    return bytes_for(ranks, part, face_floats, AtOnce());
+  }
+  /// What octants_at_once() will be of one rank.
+  static int octants_at_once(const BlockBox& part, size_t face_floats, AtOnce at_once);
   /// Of all sweeps so far.
   struct Traffic {
     size_t messages = 0, bytes = 0;

@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/surface.h"
+#include "propagation/volume_options.h"
 #include "screen/bounces/glossy/lobe_rays.h"
 #include "screen/bounces/glossy/side_radiosity.h"
 
@@ -37,8 +38,9 @@ StageRole role(const FrameOptions& options) {
   const int n = options.of<Options>().interleave;
   if (n != 1 && n != 2 && n != 4 && n != 8)
     throw Error(ExitCode::usage, fmt::format("glossy.interleave: 1, 2, 4 or 8, not {}", n));
-  // What sides send knows no orders, so a number of bounces could not be held.
-  if (options.of<Options>().rays == 0 || options.bounces) return {.active = false};
+  // What sides send knows no orders, so a number of bounces could not be held; and of nested grids no ray knows.
+  const bool nested = options.of<VolumeOptions>().cascade.nested();
+  if (options.of<Options>().rays == 0 || options.bounces || nested) return {.active = false};
   return {.needs = {product<FrameVolume>()},
           .uses = {product<AreaLights>()},
           .adds = {{DIRECT, LightShare::mirror}, {INDIRECT, LightShare::mirror}}};

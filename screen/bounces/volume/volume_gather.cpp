@@ -40,8 +40,9 @@ void VolumeGather::look_from(const Camera& camera) {
   viewer_ = perspective ? camera.world_from_camera[3] : camera.world_from_camera[2];
 }
 
-void VolumeGather::run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VoxelGrid& voxels,
-                              const SideIrradiance& irradiance, const SmoothGather* with, gl::PassTimer& timer) {
+void VolumeGather::run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VolumeSides& sides,
+                              std::span<const SideIrradiance> irradiance, const SmoothGather* with,
+                              gl::PassTimer& timer) {
   if (with != nullptr) {
     const std::array<SmoothLight*, 1> first{&with->first};
     with->pixels.run(gbuffer, first, timer);
@@ -56,7 +57,7 @@ void VolumeGather::run_on_cpu(const GBuffer& gbuffer, const Camera& camera, cons
     if (positions[4 * i + 3] == 0.0f) return;
     const glm::vec3 position(positions[4 * i], positions[4 * i + 1], positions[4 * i + 2]);
     const glm::vec3 normal = octahedral_decode(glm::vec2(normals[4 * i + 2], normals[4 * i + 3]));  // geometric
-    const PixelIrradiance e = irradiance_at_pixel(voxels, irradiance, position, normal, viewer_);
+    const PixelIrradiance e = irradiance_at_pixel(sides, irradiance, position, normal, viewer_);
     if (e.weight == 0.0f) return;
     const glm::vec3 reflectance =
         glm::vec3(albedos[4 * i], albedos[4 * i + 1], albedos[4 * i + 2]) * glm::one_over_pi<float>();

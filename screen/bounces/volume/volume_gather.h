@@ -33,8 +33,9 @@ class VolumeGather : private SmoothLight {
            gl::PassTimer& timer);
   /// The same of every pixel on the CPU (propagation/pixel_irradiance_cpu.h), for sides that are too many for buffers
   /// of the GPU; other smooth light is gathered by itself. Waits for the G-buffer.
-  void run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VoxelGrid& voxels,
-                  const SideIrradiance& irradiance, const SmoothGather* with, gl::PassTimer& timer);
+  /// Of nested grids too. @param irradiance  by level.
+  void run_on_cpu(const GBuffer& gbuffer, const Camera& camera, const VolumeSides& sides,
+                  std::span<const SideIrradiance> irradiance, const SmoothGather* with, gl::PassTimer& timer);
 
   const gl::Texture& direct() const { return direct_; }      // RGBA32F: first arrival of emission
   const gl::Texture& indirect() const { return indirect_; }  // RGBA32F [W m^-2 sr^-1]

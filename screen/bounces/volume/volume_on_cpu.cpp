@@ -34,7 +34,7 @@ void run_stages(VolumeCpu& volume, gl::PassTimer& timer, const EmbreeScene* embr
   stage("voxel/voxelize_cpu", [&] { volume.voxelize(); });
   if (embree != nullptr && volume.passages_are_old())
     stage("propagation/narrow_passages", [&] { volume.set_passages(narrow_passages(volume.voxels(), *embree)); });
-  stage("propagation/light_in_cpu", [&] { volume.light_in(light(volume.voxels())); });
+  stage("propagation/light_in_cpu", [&] { volume.light_in(light(volume.sides())); });
   stage("propagation/propagate_cpu", [&] { volume.propagate(); });
   stage("propagation/side_irradiance_cpu", [&] { volume.irradiate(); });
 }
@@ -117,8 +117,8 @@ size_t with_headroom(size_t bytes) { return bytes + bytes / 5; }
 /// FrameVolume::follow_scene.
 bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume) {
   volume.shift_grid(options.grid_shift_cells);
-  if (!same_grid(make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box), volume.grid()))
-    return false;
+  const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
+  if (!same_grid(make_cascade(grid, options.cascade).grids.front(), volume.grid())) return false;
   volume.scene_moved();
   return true;
 }
@@ -126,7 +126,7 @@ bool follow(const Scene& scene, const VolumeOptions& options, VolumeCpu& volume)
 VolumeReport report_of(const VolumeCpu& volume) {
   VolumeReport r;
   r.grid = volume.grid().cells;
-  r.sides = volume.voxels().side_count();
+  r.sides = volume.sides().count();
   r.coarse_start = volume.has_coarse_part();
   r.bounces = volume.report();
   r.pocket_cells = volume.pocket_cells();
@@ -137,9 +137,10 @@ VolumeReport report_of(const VolumeCpu& volume) {
   return r;
 }
 
-/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded; after a first bounce on the screen
-/// its virtual lights are read back. Where ranks hold the volume together this is the one that leads (VolumeLead), and
-/// has of the others' sides those that its pixels read, but no light_in() of them.
+/// The CPU twin computes, the GPU shows: sides and their irradiance are uploaded (but nested grids' pixels are read on
+/// the CPU); after a first bounce on the screen its virtual lights are read back. Where ranks hold the volume together
+/// this is the one that leads (VolumeLead), and has of the others' sides those that its pixels read, but no light_in()
+/// of them.
 class SidesOnCpu : public FrameVolume {
  public:
   SidesOnCpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size)
@@ -170,14 +171,17 @@ class SidesOnCpu : public FrameVolume {
       lead_->run(shift_);
       volume_.shift_grid(shift_);
     }
+    volume_.move_cascade(glm::vec3(camera.world_from_camera[3]));
     run_stages(volume_, timer, rays_for_passages(),
-               [&](const VoxelGrid& voxels) { return light_for(voxels, first_bounce); });
+               [&](const VolumeSides& sides) { return light_for(sides, first_bounce); });
     if (lead_) fetch_seen(gbuffer, timer);
     const EmbreeScene* embree = rays_for_passages();
     gathered_ = embree != nullptr ? seen_sides_.run(volume_, *embree, gbuffer, timer) : nullptr;
     if (!sides_on_gpu()) {
       voxels_.grid = volume_.grid();
-      gather_.run_on_cpu(gbuffer, camera, sides(), irradiance(),
+      const bool fetched = lead_.has_value();
+      gather_.run_on_cpu(gbuffer, camera, fetched ? VolumeSides(fetched_.voxels) : volume_.sides(),
+                         fetched ? std::span(&fetched_.irradiance, 1) : std::span(volume_.irradiance_of_levels()),
                          first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
       return;
     }
@@ -200,7 +204,8 @@ class SidesOnCpu : public FrameVolume {
   void list_textures(std::vector<NamedTexture>& list) const override { gather_.list_textures(list); }
   const VoxelGridGl& voxels() const override { return voxels_; }
   bool sides_on_gpu() const override {
-    return fit_on_gpu(volume_.grid(), lead_ ? totals_.sides : volume_.voxels().side_count());
+    return !options_.cascade.nested() &&
+           fit_on_gpu(volume_.grid(), lead_ ? totals_.sides : volume_.voxels().side_count());
   }
   const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
   const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
@@ -247,21 +252,20 @@ class SidesOnCpu : public FrameVolume {
     }
   }
   const EmbreeScene* rays_for_passages() const {
-    if (options_.scheme.scheme != Scheme::ordinates || lead_) return nullptr;
+    if (options_.scheme.scheme != Scheme::ordinates || lead_ || options_.cascade.nested()) return nullptr;
     return after_first_bounce() ? embree_.get() : direct_light_->embree();
   }
-  SideFlux light_for(const VoxelGrid& voxels, const FirstBounce* first_bounce) {
-    if (lead_) return direct_light_->flux(voxels, *volume_.ranks());
-    if (!after_first_bounce()) return direct_light_->flux(voxels);
+  SideFlux light_for(const VolumeSides& sides, const FirstBounce* first_bounce) {
+    if (lead_) return direct_light_->flux(volume_.voxels(), *volume_.ranks());
+    if (!after_first_bounce()) return direct_light_->flux(sides);
     const VirtualLightsForSides& lights =
         lights_.end(first_bounce->lights, first_bounce->subdivision, first_bounce->sample);
     const bool apart = first_is_apart();
     std::optional<size_t> rays;
     if (options_.side_rays) rays = size_t(*options_.side_rays);
-    SideFlux flux = flux_after_first_bounce(voxels, *embree_, lights, apart, rays);
+    SideFlux flux = flux_after_first_bounce(sides, *embree_, lights, apart, rays);
     if (const SkyMaps* sky = first_bounce->sky)
-      add_sky(voxels, sky_.irradiance(voxels, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart,
-              flux);
+      add_sky(sides, sky_.irradiance(sides, *embree_, sky->parts(), sky->version(), first_bounce->sample), apart, flux);
     return flux;
   }
   const VoxelGrid& sides() const { return lead_ ? fetched_.voxels : volume_.voxels(); }
@@ -327,7 +331,7 @@ class PulseOnCpu : public FrameVolume {
 
   void run(const gl::SceneBuffers& /*buffers*/, const ReflectiveShadowMap& /*maps*/, const GBuffer& gbuffer,
            const Camera& /*camera*/, const FirstBounce* /*first_bounce*/, gl::PassTimer& timer) override {
-    run_stages(volume_, timer, nullptr, [&](const VoxelGrid& voxels) { return direct_light_.flux(voxels); });
+    run_stages(volume_, timer, nullptr, [&](const VolumeSides& sides) { return direct_light_.flux(sides); });
     {
       auto scope = timer.scope("screen/bounces/volume/upload_volume");
       upload_radiance(volume_.radiance(), radiance_);
@@ -370,6 +374,8 @@ class PulseOnCpu : public FrameVolume {
 
 size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm::ivec2 size) {
   const Grid grid = make_grid(scene, options.grid_cells, options.grid_shift_cells, options.grid_box);
+  if (options.cascade.nested())
+    return bytes_expected_cpu(scene, make_cascade(grid, options.cascade), options) + VolumeGather::bytes_for(size);
   const ExpectedSides expected = expected_sides(scene, grid);
   const bool fits = fit_on_gpu(grid, expected.sides);
   const size_t uploaded = sizeof(Grid) + 8 * cell_count(grid) + sizeof(shared::Side) * expected.sides;
