@@ -14,8 +14,8 @@ SHARED_BEGIN
 // Texels of four numbers each in a node.
 #define LIGHT_NODE_TEXELS 5
 
-// std430, 80 bytes; gathers load its first three vectors of four, and of nodes that are no leaves the last one. Dark nodes have no flux, and nothing below them has
-// any.
+// std430, 80 bytes; gathers load its first three vectors of four, and of nodes that are no leaves the last one. Dark
+// nodes have no flux, and nothing below them has any.
 struct LightNode {
   vec3 position;      // mean of its parts, by flux; centred frame
   float area_m2;      // of a disk that is spread as its parts are, at least surface_m2
