@@ -71,7 +71,10 @@ Rms rms(const Image& reference, const Image& image) {
 nlohmann::json to_json(const Rms& r) { return {{"of_mean_percent", r.of_mean}, {"of_range_percent", r.of_range}}; }
 
 std::string text_of(const nlohmann::json& rms) {
-  return fmt::format("{:6.2f} /{:5.2f} %", rms["of_mean_percent"].get<double>(), rms["of_range_percent"].get<double>());
+  const std::string text =
+      fmt::format("{:6.2f} /{:5.2f} %", rms["of_mean_percent"].get<double>(), rms["of_range_percent"].get<double>());
+  if (!rms.contains("of_white_percent")) return text;
+  return text + fmt::format(" ({:.2f} %)", rms["of_white_percent"].get<double>());
 }
 
 }  // namespace nichols2010

@@ -101,6 +101,10 @@ class Bench {
     maps.of<screen::VisibilityChoice>().maps = Maps::imperfect;
     maps.of<screen::ImperfectMapOptions>().texels = 64;
     rows.push_back(measured("1024 maps of 64 x 64 (imperfect)", maps, cycles_));
+    maps.of<screen::VisibilityChoice>().maps = Maps::regular;
+    maps.of<screen::ImperfectMapOptions>().regular_count = 1024;
+    maps.of<screen::ImperfectMapOptions>().regular_texels = 64;
+    rows.push_back(measured("1024 maps of 64 x 64 (regular)", maps, cycles_));
     FrameOptions hybrid = options_of("hybrid", options_.size);
     hybrid.of<VolumeOptions>().grid_cells = 48;
     rows.push_back(measured("hybrid, its defaults", hybrid, cycles_));

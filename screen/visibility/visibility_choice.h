@@ -18,6 +18,7 @@ struct VisibilityChoice {
     none,
     voxels,  // of the camera's frustum (Nichols 2010)
     faces,   // that the volume blocks
+    rays,    // of the CPU, exact
   } ways = Ways::voxels;
 };
 

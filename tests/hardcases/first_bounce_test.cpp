@@ -13,6 +13,7 @@
 #include "reference/virtual_light_tracer.h"
 #include "screen/lights/lattice/wave_lattice.h"
 #include "screen/visibility/visibility_choice.h"
+#include "tests/hardcases/flicker.h"
 #include "tests/hardcases/frame_case.h"
 #include "tests/support/frame_picture.h"
 #include "tests/support/gl_test.h"
@@ -277,23 +278,6 @@ TEST_F(FirstBounce, DarkRoomBehindAThinWall) {
   }
   EXPECT_LT(share[1], 0.3 * share[0]);
 }
-
-/// Largest and median c_k: block error of a frame against the one before.
-struct Flicker {
-  std::vector<double> changes;
-  std::optional<Image> last;
-  void add(const Image& image) {
-    const Mask all(image.pixels.size(), 1);
-    if (last) changes.push_back(measure(*last, image, nullptr, all).relative.value().blk_pct.value());
-    last = image;
-  }
-  double median() const {
-    std::vector<double> sorted = changes;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
-  }
-  double largest() const { return *std::max_element(changes.begin(), changes.end()); }
-};
 
 struct Flickering {
   std::string name;

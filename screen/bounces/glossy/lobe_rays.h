@@ -14,7 +14,7 @@ namespace volgi::screen {
 struct GlossyOptions {
   int rays = 2;        // of a pixel; 0: mirrors reflect as if light were even
   int interleave = 8;  // pixels of a block of n x n share rays and lights: 1, 2, 4 or 8
-  float least_roughness = 0.3f;
+  float least_roughness = 0.25f;
 };
 
 /// Passes "screen/bounces/glossy/lobe_rays" and "screen/bounces/glossy/join_lobes": what mirrors of facets (glTF's GGX)

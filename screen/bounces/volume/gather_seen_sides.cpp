@@ -39,7 +39,7 @@ size_t GatherSeenSides::bytes() const {
 
 bool gathers_seen_sides(const VolumeOptions& options) {
   return options.gather_rays > 0 && options.scheme.scheme == Scheme::ordinates && !options.bounces &&
-         !options.passes_per_run && options.ranks == nullptr;
+         !options.passes_per_run && options.ranks == nullptr && !options.cascade.nested();
 }
 
 }  // namespace volgi::screen

@@ -20,6 +20,7 @@ constexpr const char* REFINE = "screen/gather/area/refine.comp.glsl";
 
 // At most, of all loops.
 int turns_of_way(const AreaGather::Hidden& hidden) {
+  if (hidden.rays != nullptr) return 1;
   if (hidden.voxels != nullptr) return 6 * hidden.voxels->steps();  // runs, samples, two words or more of each
   if (hidden.faces == nullptr) return 1;
   const glm::ivec3 cells = hidden.faces->voxels.grid.cells;
@@ -67,17 +68,26 @@ AreaGather::AreaGather(glm::ivec2 size, const AreaGatherOptions& options)
 }
 
 const gl::Program& AreaGather::gather_program(bool first, const Hidden& hidden) {
-  const std::string hides = hidden.voxels != nullptr ? "VOXELS" : hidden.faces != nullptr ? "FACES" : "NOTHING";
+  constexpr const char* GATHER = "screen/gather/area/gather.comp.glsl";
+  const std::string hides = hidden.rays != nullptr     ? "RAYS"
+                            : hidden.voxels != nullptr ? "VOXELS"
+                            : hidden.faces != nullptr  ? "FACES"
+                                                       : "NOTHING";
   if (hides_ != hides) {
     hides_ = hides;
-    gather_first_ = gl::Program::compute("screen/gather/area/gather.comp.glsl", {hides, "FIRST"});
-    gather_finer_ = gl::Program::compute("screen/gather/area/gather.comp.glsl", {hides});
+    gather_first_ = gl::Program::compute(GATHER, {hides, "FIRST"});
+    gather_finer_ = gl::Program::compute(GATHER, {hides});
+    if (hidden.rays != nullptr) {
+      ask_first_ = gl::Program::compute(GATHER, {hides, "FIRST", "ASK"});
+      ask_finer_ = gl::Program::compute(GATHER, {hides, "ASK"});
+    }
   }
   return first ? gather_first_ : gather_finer_;
 }
 
 void AreaGather::run(const GBuffer& gbuffer, const AreaLights& lights, const Hidden& hidden, gl::PassTimer& timer) {
   gbuffer.bind();
+  if (hidden.rays != nullptr) lights_ = lights.download();
   counts_.clear();
   gathered_step_.clear({0.0f, 0.0f, 0.0f, 0.0f});
   const int per_group = lights_in_group(lights.count());
@@ -123,10 +133,38 @@ void AreaGather::refine(const Level& level, int groups) {
   wait_for_pixels();
 }
 
+/// Of one dispatch: some members of some groups.
+struct AreaGather::Part {
+  bool first_level;
+  int per_group, shares, first, end;
+  glm::ivec2 groups;
+  void set(const gl::Program& program) const {
+    program.set("first", first);
+    program.set("end", end);
+    program.set("groups", groups);
+  }
+};
+
+void AreaGather::ask(const WorkList& list, const Part& part, const HostRays& rays) {
+  const size_t pixels = list.count();
+  const auto members = size_t((part.end - part.first + part.shares - 1) / part.shares);
+  gl::reserve(askers_, 2 * pixels * sizeof(glm::vec4));
+  gl::reserve(questions_, members * pixels * sizeof(glm::uvec2));
+  askers_.bind_storage(AREA_ASKERS_SLOT);
+  questions_.bind_storage(AREA_QUESTIONS_SLOT);
+  const gl::Program& program = part.first_level ? ask_first_ : ask_finer_;
+  part.set(program);
+  program.use();
+  list.dispatch();
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  rays.answer({pixels, part.per_group, part.shares, part.first, part.end}, lights_, askers_, questions_);
+}
+
 void AreaGather::gather(const Level& level, const AreaLights& lights, const Hidden& hidden) {
-  const gl::Program& program = gather_program(level.step_px == options_.coarsest, hidden);
+  const bool first_level = level.step_px == options_.coarsest;
+  const gl::Program& program = gather_program(first_level, hidden);
   if (hidden.voxels != nullptr) hidden.voxels->bind(program);
-  if (hidden.faces != nullptr) {
+  if (hidden.faces != nullptr && hidden.rays == nullptr) {
     hidden.faces->voxels.bind();
     cells_.bind(hidden.faces->voxels);
   }
@@ -136,24 +174,34 @@ void AreaGather::gather(const Level& level, const AreaLights& lights, const Hidd
   counts_.bind_storage(AREA_COUNTS_SLOT);
   bind_pictures();
   if (shares > 1 && level.step_px == 1) shared_irradiance_.bind_image(AREA_IRRADIANCE_IMAGE, GL_READ_WRITE);
-  program.set("step_px", level.step_px);
-  program.set("light_count", lights.count());
-  program.set("per_group", per_group);
-  program.set("shares", shares);
-  program.set("incremental", options_.incremental ? 1 : 0);
+  const auto set_level = [&](const gl::Program& p) {
+    p.set("step_px", level.step_px);
+    p.set("light_count", lights.count());
+    p.set("per_group", per_group);
+    p.set("shares", shares);
+    p.set("incremental", options_.incremental ? 1 : 0);
+  };
+  set_level(program);
+  if (hidden.rays != nullptr) set_level(first_level ? ask_first_ : ask_finer_);
   const int ways = std::max(TURNS_AT_ONCE / turns_of_way(hidden), 1);  // of a thread
-  const int groups = std::min(ways, AREA_GROUPS), members = std::max(ways / AREA_GROUPS, 1);
-  program.use();
+  const int groups = std::min(ways, AREA_GROUPS);
+  const int members = hidden.rays != nullptr ? AREA_SHARES : std::max(ways / AREA_GROUPS, 1);
   for (size_t k = 0; k < level.lists.size(); ++k) {
     const int share = shares > 1 ? int(k) : 0;
     level.lists[k].bind(AREA_LIST_SLOT);
     bool begun = false;
     for (int first = share; first < per_group; first += members * shares) {
-      program.set("first", first);
-      program.set("end", std::min(first + members * shares, per_group));
       for (int group = 0; group < AREA_GROUPS; group += groups) {
-        program.set("groups", glm::ivec2(group, std::min(group + groups, AREA_GROUPS)));
+        const Part part{first_level,
+                        per_group,
+                        shares,
+                        first,
+                        std::min(first + members * shares, per_group),
+                        {group, std::min(group + groups, AREA_GROUPS)}};
+        if (hidden.rays != nullptr) ask(level.lists[k], part, *hidden.rays);
+        part.set(program);
         program.set("begun", begun ? 1 : 0);
+        program.use();
         level.lists[k].dispatch();
         glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
         begun = true;
@@ -195,6 +243,7 @@ AreaGather::Figures AreaGather::figures() const {
 
 size_t AreaGather::bytes() const {
   size_t bytes = (4 * 16 + 1) * size_t(size_.x) * size_t(size_.y) + counts_.bytes();
+  if (questions_.id() != 0) bytes += questions_.bytes() + askers_.bytes();
   for (const Level& level : levels_) {
     for (const WorkList& list : level.lists) bytes += list.bytes();
   }

@@ -9,6 +9,7 @@
 #include "screen/base/named_texture.h"
 #include "screen/base/work_list.h"
 #include "screen/sources/textured_area/area_lights.h"
+#include "screen/visibility/host_rays/host_rays.h"
 #include "screen/visibility/screen_voxels/screen_voxels.h"
 #include "screen/visibility/screen_voxels/screen_voxels_stage.h"
 #include "voxel/face_walk_gl.h"
@@ -44,10 +45,11 @@ class AreaGather {
   static void check(const AreaGatherOptions& options);
   AreaGather(glm::ivec2 size, const AreaGatherOptions& options);
 
-  /// What hides lights: one of them, or neither.
+  /// What hides lights: rays before the others; null: they are not there.
   struct Hidden {
-    const ScreenVoxels* voxels;
-    const BlockedFaces* faces;
+    const ScreenVoxels* voxels = nullptr;
+    const BlockedFaces* faces = nullptr;
+    const HostRays* rays = nullptr;
   };
   void run(const GBuffer& gbuffer, const AreaLights& lights, const Hidden& hidden, gl::PassTimer& timer);
   /// The faces of the next run are others.
@@ -81,6 +83,8 @@ class AreaGather {
   };
   void refine(const Level& level, int groups);
   void gather(const Level& level, const AreaLights& lights, const Hidden& hidden);
+  struct Part;
+  void ask(const WorkList& list, const Part& part, const HostRays& rays);
   void join(const Level& level);
   void bind_pictures() const;
   const gl::Program& gather_program(bool first, const Hidden& hidden);
@@ -90,10 +94,12 @@ class AreaGather {
   std::vector<Level> levels_;  // the coarsest first
   gl::Texture irradiance_, shared_irradiance_, masks_, gathered_step_, radiance_;
   gl::Buffer counts_;
+  gl::Buffer questions_, askers_;             // of HostRays
+  std::vector<shared::VirtualLight> lights_;  // on the host, for them
   FaceWalkCells cells_;
   gl::Program first_, finer_, join_, shade_;
   std::string hides_;  // what the next two were made for
-  gl::Program gather_first_, gather_finer_;
+  gl::Program gather_first_, gather_finer_, ask_first_, ask_finer_;
 };
 
 }  // namespace volgi::screen

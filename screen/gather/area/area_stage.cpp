@@ -41,7 +41,7 @@ constexpr Parameter PARAMETERS[] = {
 StageRole role(const FrameOptions& options) {
   AreaGather::check(options.of<Options>());
   return {.needs = {product<AreaLights>()},
-          .uses = {product<ScreenVoxels>(), product<BlockedFaces>()},
+          .uses = {product<ScreenVoxels>(), product<BlockedFaces>(), product<HostRays>()},
           .adds = {{{LightPath::emission_direct}}, {{LightPath::emission_direct}, LightShare::mirror}}};
 }
 
@@ -56,7 +56,7 @@ class AreaStage : public Stage {
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& lights = frame.get<AreaLights>();
     if (lights.count() == 0) return;
-    const AreaGather::Hidden hidden{frame.find<ScreenVoxels>(), frame.find<BlockedFaces>()};
+    const AreaGather::Hidden hidden{frame.find<ScreenVoxels>(), frame.find<BlockedFaces>(), frame.find<HostRays>()};
     gather_.run(frame.gbuffer, lights, hidden, timer);
     frame.layers.push_back({&gather_.radiance(), {LightPath::emission_direct}});
     if (!lobes_) return;

@@ -13,7 +13,7 @@ namespace volgi::screen {
 /// shadow they share, each to the nearest one, and in a cluster stay in the order of Hilbert's curve through what their
 /// source sends: runs are compact patches that face one way, and the tree needs no building but sums. A node holds the
 /// sum of its sub-lights' flux and area and their mean position and normal by flux, so that all candidates count from
-/// afar, and not the one that was chosen of sixteen.
+/// afar, and not the one that was chosen of sixteen; and how they are spread, along an axis and off their plane.
 ///
 /// The cut through it (shaders/screen/gather/multires/light_cut.glsl) is soft: a point at squared distance d^2 takes of
 /// a node the share that rises from 0 at d^2 = z s to 1 at 2 z s, and of its parts the rest, s being the node's size:

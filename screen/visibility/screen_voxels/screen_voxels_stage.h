@@ -4,8 +4,9 @@
 
 namespace volgi::screen {
 
-/// What hides lights on emissive surfaces: voxels of the camera's frustum (screen_voxels.h), or the volume's blocked
-/// faces, which know what the camera does not see but no detail below a cell. Makes ScreenVoxels or BlockedFaces.
+/// What hides lights on emissive surfaces: voxels of the camera's frustum (screen_voxels.h), the volume's blocked
+/// faces, which know what the camera does not see but no detail below a cell, or rays of the CPU (host_rays.h), and
+/// faces for lobes then. Makes ScreenVoxels, BlockedFaces or HostRays.
 extern const StageType SCREEN_VOXELS;
 
 /// The volume's blocked faces, for rays (shaders/voxel/face_walk.glsl).

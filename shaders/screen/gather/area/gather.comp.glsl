@@ -2,7 +2,8 @@
 // Irradiance of lights on emissive surfaces at the pixels of a list, and bits of which groups of lights are seen. A
 // group on which all corners of the coarser level agree is not asked for again (Nichols 2010, section 5.3.3.2). Threads
 // share out what ways their pixels ask for, or all would wait for the one that asks for most.
-// Set by the program: FIRST, the coarsest level; VOXELS or FACES, what hides lights
+// Set by the program: FIRST, the coarsest level; VOXELS, FACES or RAYS, what hides lights. RAYS are the host's: what
+// ASK has written down, it answers in the same place.
 #include "screen/base/coarse_pixels.glsl"
 #include "screen/gather/area/area_level.glsl"
 #include "shared/disk_to_point.shared.h"
@@ -20,6 +21,11 @@ layout(binding = AREA_IRRADIANCE_IMAGE, rgba32f) uniform image2D irradiance;
 layout(binding = AREA_MASK_IMAGE, rgba32ui) uniform uimage2D masks;
 layout(std430, binding = AREA_LIST_SLOT) readonly buffer PixelList { WorkListHead head; uint listed[]; };
 layout(std430, binding = AREA_LIGHTS_SLOT) readonly buffer AreaLights { VirtualLight area_lights[]; };
+#ifdef RAYS
+// Of each listed pixel and member a bit for each group.
+layout(std430, binding = AREA_QUESTIONS_SLOT) buffer Questions { uvec2 questions[]; };
+layout(std430, binding = AREA_ASKERS_SLOT) writeonly buffer Askers { vec4 askers[]; };  // positions and normals
+#endif
 layout(std430, binding = AREA_COUNTS_SLOT) buffer Counts { uint ways, ways_asked; };
 uniform int light_count;
 uniform int per_group;  // lights
@@ -74,6 +80,39 @@ uint bits_between(ivec2 range, int first) {
   return r.x >= r.y ? 0u : (0xffffffffu >> uint(32 - (r.y - r.x))) << uint(r.x);
 }
 
+#ifdef RAYS
+// Of a thread that has a pixel.
+uvec2 answers(int index, int member, uvec2 unknown) {
+  int place = index * ((end - first + shares - 1) / shares) + (member - first) / shares;
+#ifdef ASK
+  questions[place] = unknown;
+  return uvec2(0u);
+#else
+  return questions[place];
+#endif
+}
+#else
+// Of all threads of a group at once, which share out what they ask for.
+uvec2 answers_of_group(int own, int member, uvec2 unknown) {
+  uint at = atomicAdd(way_count, uint(bitCount(unknown.x) + bitCount(unknown.y)));
+  open_bits[2 * own] = 0u;
+  open_bits[2 * own + 1] = 0u;
+  for (int word = 0; word < 2; ++word) {
+    uint left = word == 0 ? unknown.x : unknown.y;
+    for (; left != 0u; left &= left - 1u) ways_listed[at++] = uint(own * AREA_GROUPS + 32 * word + findLSB(left));
+  }
+  barrier();
+  for (int k = own; k < int(way_count); k += LINEAR_GROUP) {
+    int from = int(ways_listed[k]) / AREA_GROUPS, group = int(ways_listed[k]) % AREA_GROUPS;
+    if (is_seen(positions[from], geometric_normals[from], area_lights[asked_light(group, member)]))
+      atomicOr(open_bits[2 * from + group / 32], 1u << uint(group & 31));
+  }
+  barrier();
+  if (own == 0) way_count = 0u;
+  return uvec2(open_bits[2 * own], open_bits[2 * own + 1]);
+}
+#endif
+
 void main() {
   int index = int(global_index()), own = int(gl_LocalInvocationIndex);
   bool listed_here = index < int(head.count);
@@ -107,22 +146,13 @@ void main() {
       if (((group < 32 ? seen.x : seen.y) & bit) != 0u) sum += light;
     }
     uvec2 open = facing & seen, unknown = facing & ~(seen | hidden);
-    uint asked = uint(bitCount(unknown.x) + bitCount(unknown.y)), at = atomicAdd(way_count, asked);
     atomicAdd(all_ways, uint(bitCount(facing.x) + bitCount(facing.y)));
-    open_bits[2 * own] = 0u;
-    open_bits[2 * own + 1] = 0u;
-    for (int word = 0; word < 2; ++word) {
-      uint left = word == 0 ? unknown.x : unknown.y;
-      for (; left != 0u; left &= left - 1u) ways_listed[at++] = uint(own * AREA_GROUPS + 32 * word + findLSB(left));
-    }
-    barrier();
-    for (int k = own; k < int(way_count); k += LINEAR_GROUP) {
-      int from = int(ways_listed[k]) / AREA_GROUPS, group = int(ways_listed[k]) % AREA_GROUPS;
-      if (is_seen(positions[from], geometric_normals[from], area_lights[asked_light(group, member)]))
-        atomicOr(open_bits[2 * from + group / 32], 1u << uint(group & 31));
-    }
-    barrier();
-    uvec2 found = uvec2(open_bits[2 * own], open_bits[2 * own + 1]);
+    atomicAdd(all_asked, uint(bitCount(unknown.x) + bitCount(unknown.y)));
+#ifdef RAYS
+    uvec2 found = listed_here ? answers(index, member, unknown) : uvec2(0u);
+#else
+    uvec2 found = answers_of_group(own, member, unknown);
+#endif
     for (int group = groups.x; group < end_group; ++group) {
       if (((group < 32 ? found.x : found.y) >> uint(group & 31) & 1u) != 0u)
         sum += arriving_of(group, member, position, normal, geometric);
@@ -131,12 +161,15 @@ void main() {
     faced |= facing;
     some_seen |= open;
     all_seen &= open | ~facing;
-    if (own == 0) {
-      all_asked += way_count;
-      way_count = 0u;
-    }
+#ifndef RAYS
     barrier();
+#endif
   }
+#ifdef ASK
+  if (!listed_here) return;
+  askers[2 * index] = vec4(position, 0.0);
+  askers[2 * index + 1] = vec4(geometric, 0.0);
+#else
   if (listed_here) {
     uvec2 here = uvec2(bits_between(groups, 0), bits_between(groups, 32));
     uvec4 mask = uvec4((some_seen | ~faced) & here, all_seen);
@@ -148,8 +181,10 @@ void main() {
     imageStore(irradiance, pixel, vec4(sum, 1.0));
     imageStore(masks, pixel, mask);
   }
+  barrier();
   if (own == 0) {
     atomicAdd(ways, all_ways);
     atomicAdd(ways_asked, all_asked);
   }
+#endif
 }

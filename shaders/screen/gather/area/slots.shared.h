@@ -13,6 +13,8 @@
 #define AREA_LIST_SLOT 0
 #define AREA_LIGHTS_SLOT 1
 #define AREA_COUNTS_SLOT 2
+#define AREA_QUESTIONS_SLOT 3  // of the host's rays
+#define AREA_ASKERS_SLOT 4
 
 // Of what lobes reflect; ways are three textures or images each.
 #define AREA_LOBE_KIND_IMAGE 0

@@ -8,8 +8,8 @@
 #include "shared/octahedral.glsl"
 #include "shared/virtual_light.shared.h"
 
-// LightNode in four quarters each. A buffer texture: software rasterizers read it faster than storage.
-layout(binding = LIGHT_NODES_UNIT) uniform samplerBuffer node_quarters;
+// LightNode, LIGHT_NODE_TEXELS each. A buffer texture: software rasterizers read it faster than storage.
+layout(binding = LIGHT_NODES_UNIT) uniform samplerBuffer node_texels;
 layout(std430, binding = LIGHT_ROOTS_SLOT) readonly buffer LightRoots { int first_root[]; };
 uniform int area_light_count;
 uniform int seen_level;  // of nodes that are worth a virtual light
@@ -34,18 +34,54 @@ struct SeenNode {
   bool has_light;  // it or its parts may light the point
 };
 
-SeenNode seen_node(Receiver at, int node) {
-  vec4 place = texelFetch(node_quarters, 4 * node), light = texelFetch(node_quarters, 4 * node + 1);
-  vec4 bounds = texelFetch(node_quarters, 4 * node + 2);
+// Mean height over a plane of a disk whose middle is at `height` and whose rim rises by `reach` over that: of what lies
+// over the plane, over all of the disk.
+float height_over(float height, float reach) {
+  float t = clamp(height / max(reach, 1e-30), -1.0, 1.0);
+  float part = (t * acos(-t) + sqrt(1.0 - t * t) * (2.0 + t * t) / 3.0) * (1.0 / 3.14159265);
+  return abs(t) < 1.0 ? reach * part : max(height, 0.0);
+}
+
+#define SPAN_OF_DEVIATION 1.7320508  // half of a uniform span, over its standard deviation
+
+// What a sum of lights gives that is no disk [m^-2]: parts that lie behind, or under the point's horizon, give nothing,
+// the second order of its spread is that of its axes, and normals that turn away from their mean take light from it.
+// @param w  from the point. The others as disk_to_point() has them.
+float form_of_sum(Receiver at, int node, bool few, vec3 w, float height, float along, float facing, float squared,
+                  float area_m2) {
+  vec4 spread = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 4);
+  vec2 turned = unpackHalf2x16(floatBitsToUint(spread.w));
+  float more = 0.5 * dot(spread.xyz, spread.xyz), up_stretch = dot(at.normal, spread.xyz);
+  float w_stretch = dot(w, spread.xyz), off_plane = turned.x * turned.x * area_m2;
+  float in_plane = 0.5 * (area_m2 * (0.5 / 3.14159265) - off_plane) - more;
+  float rise_2 = in_plane * (1.0 - facing * facing) + up_stretch * up_stretch + off_plane * facing * facing;
+  // Four lights are seen or not, each whole.
+  if (!few) along = height_over(along, SPAN_OF_DEVIATION * sqrt(max(rise_2, 0.0)));
+  float fan = 0.25 * max(1.0 - turned.y * turned.y, 0.0) * squared;
+  height = height_over(height, 2.0 * sqrt(off_plane + fan));
+  float form = disk_to_point(height, along, facing, squared, area_m2);
+  float bent = w_stretch * w_stretch - more * (squared - height * height);
+  float lean = w_stretch * up_stretch - more * (along - facing * height);
+  float inverse = 1.0 / (squared + 1e-30);
+  form += height * (12.0 * along * bent * inverse - 4.0 * lean) * (inverse * inverse * inverse * (1.0 / 3.14159265));
+  return along > 0.0 ? max(form, 0.0) * turned.y : 0.0;
+}
+
+SeenNode seen_node(Receiver at, int node, int level) {
+  vec4 place = texelFetch(node_texels, LIGHT_NODE_TEXELS * node);
+  vec4 light = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 1);
+  vec4 bounds = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 2);
   vec3 w = place.xyz - at.position;
   vec3 normal = octahedral_decode(unpackSnorm2x16(floatBitsToUint(light.w)));
   float squared = dot(w, w);
   float along = dot(w, at.normal), above = dot(w, at.geometric), height = -dot(w, normal);
   float facing = -dot(normal, at.normal);
-  float form = disk_to_point(max(height, 0.0), along, facing, squared, place.w);
-  form = min(form, 0.5 * (1.0 + facing) / max(place.w, 1e-30));  // of the whole plane: none of its disks gives more
   bool has_light = light.rgb != vec3(0.0) && above > -bounds.y && height > bounds.z;
-  return SeenNode(has_light && min(along, above) > 0.0 ? light.rgb * form : vec3(0.0), squared, bounds.x,
+  float form = level == 0 ? disk_to_point(max(height, 0.0), along, facing, squared, place.w)
+                          : form_of_sum(at, node, level == 1, w, height, along, facing, squared, place.w);
+  form = min(form, 0.5 * (1.0 + facing) / max(place.w, 1e-30));  // of the whole plane: none of its disks gives more
+  bool gives = has_light && (level > 1 || min(along, above) > 0.0);
+  return SeenNode(gives ? light.rgb * form : vec3(0.0), squared, bounds.x,
                   floatBitsToInt(bounds.w) == VIRTUAL_LIGHT_EMITTED, has_light);
 }
 
@@ -69,7 +105,7 @@ void add_root(Receiver at, int root, float visibility, inout Irradiance sum) {
   vec4 left_low = vec4(1.0), left_high = vec4(1.0);
   bool done = false;
   while (!done) {
-    SeenNode node = seen_node(at, first_of_level(level) + i);
+    SeenNode node = seen_node(at, first_of_level(level) + i, level);
     float hidden = (1.0 - visibility) * node_share(node.squared, abs(node.size_m2), UNHIDDEN_ZONE);
     seen = level > seen_level ? visibility : level == seen_level ? 1.0 - hidden : seen;
     float own = level > 0 ? node_share(node.squared, node.size_m2, zone) : 1.0;
@@ -90,8 +126,8 @@ void add_root(Receiver at, int root, float visibility, inout Irradiance sum) {
 
 // Whether a point may see something of a node.
 bool may_see(Receiver at, int node) {
-  vec4 place = texelFetch(node_quarters, 4 * node), light = texelFetch(node_quarters, 4 * node + 1);
-  vec4 bounds = texelFetch(node_quarters, 4 * node + 2);
+  vec4 place = texelFetch(node_texels, LIGHT_NODE_TEXELS * node), light = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 1);
+  vec4 bounds = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 2);
   vec3 w = place.xyz - at.position;
   vec3 normal = octahedral_decode(unpackSnorm2x16(floatBitsToUint(light.w)));
   return light.rgb != vec3(0.0) && dot(w, at.geometric) > -bounds.y && -dot(w, normal) > bounds.z;
@@ -108,7 +144,7 @@ Irradiance irradiance_of_lights(Receiver at) {
     while (seen_roots != 0u) {
       int k = begin + findLSB(seen_roots);
       seen_roots &= seen_roots - 1u;
-      int cluster = floatBitsToInt(texelFetch(node_quarters, 4 * (first + k) + 3).z);
+      int cluster = floatBitsToInt(texelFetch(node_texels, LIGHT_NODE_TEXELS * (first + k) + 3).z);
       float visibility = area_light_visibility(cluster, area_lights[cluster], at.position, at.geometric);
       add_root(at, k, visibility, sum);
     }

@@ -11,8 +11,11 @@ SHARED_BEGIN
 
 #define NO_FLAT_NODE -3.0e38f  // rise_m of a node whose parts face different ways
 
-// std430, 64 bytes; gathers load the first three vectors of four. Dark nodes have no flux, and nothing below them has
-// any.
+// Texels of four numbers each in a node.
+#define LIGHT_NODE_TEXELS 5
+
+// std430, 80 bytes; gathers load its first three vectors of four, and of nodes that are no leaves the last one. Dark
+// nodes have no flux, and nothing below them has any.
 struct LightNode {
   vec3 position;      // mean of its parts, by flux; centred frame
   float area_m2;      // of a disk that is spread as its parts are, at least surface_m2
@@ -26,9 +29,14 @@ struct LightNode {
   float mean_normal;  // length of the mean normal by flux, 1 where all are alike
   int cluster;
   float surface_m2;  // sum of its parts' areas
+  // How its flux is spread otherwise than a disk's: along `stretch`, in its plane, and across that. Half the square of
+  // its length is by how much the variance along it is more than the mean of both. [m]
+  vec3 stretch;
+  uint turned;  // packHalf2x16: standard deviation off its plane over the root of its area; mean_normal
 };
 #ifdef __cplusplus
-static_assert(sizeof(LightNode) == 64 && offsetof(LightNode, size_m2) == 32 && offsetof(LightNode, variance_m2) == 48);
+static_assert(sizeof(LightNode) == 80 && offsetof(LightNode, size_m2) == 32 && offsetof(LightNode, variance_m2) == 48 &&
+              offsetof(LightNode, stretch) == 64);
 #endif
 
 // Share of a node's irradiance that comes from itself and not from its parts: 0 up to a squared distance of `zone`

@@ -116,12 +116,15 @@ TEST_F(LobeRays, AFloorBesideALampAsTraced) {
   expect_as_traced(beside_a_lamp(0.4f), LightPart::full, 12.0);
 }
 
-// A Phong lobe of exponent 20, which is roughness 0.395.
+// Phong lobes of exponents 20 and 80, which are roughness 0.395 and 0.281: neither is widened.
 TEST_F(LobeRays, APhongFloorBesideALampAsTraced) {
-  Scene scene = beside_a_lamp(std::pow(2.0f * 20.0f + 1.0f, -0.25f));
-  for (Material& m : scene.materials) m.phong = true;
-  expect_as_traced(scene, LightPart::direct, 12.0);
-  expect_as_traced(scene, LightPart::full, 12.0);
+  for (const float exponent : {20.0f, 80.0f}) {
+    Scene scene = beside_a_lamp(std::pow(2.0f * exponent + 1.0f, -0.25f));
+    for (Material& m : scene.materials) m.phong = true;
+    EXPECT_EQ(seen(scene, options(2)).report.number("glossy_widened_share"), 0.0) << exponent;
+    expect_as_traced(scene, LightPart::direct, 12.0);
+    if (exponent == 20.0f) expect_as_traced(scene, LightPart::full, 12.0);
+  }
 }
 
 TEST_F(LobeRays, WhatIsNarrowerIsWidenedAndSaidSo) {

@@ -88,6 +88,14 @@ TEST_F(AreaGather, WhatHidesALampAsRaysToItsLights) {
   RecordProperty("faces", std::to_string(faces));
   EXPECT_LT(voxels, 8.0);
   EXPECT_LT(faces, 12.0);  // cells of 6 cm
+  // Rays of the CPU are those rays, but at the disk's edge, where a way may pass either way.
+  const Rendered rays = seen(scene, Ways::rays, {.coarsest = 1, .interleave = 0});
+  EXPECT_LT(difference_percent(rays.image, exact), 0.2);
+  const Rendered few = seen(scene, Ways::rays, {.coarsest = 8, .interleave = 0});
+  RecordProperty("rays", std::to_string(difference_percent(rays.image, exact)));
+  RecordProperty("rays_coarse_to_fine", std::to_string(difference_percent(few.image, exact)));
+  EXPECT_LT(difference_percent(few.image, exact), 2.5);
+  EXPECT_LT(few.report.number("ways_asked"), 0.3 * rays.report.number("ways_asked"));
 }
 
 TEST_F(AreaGather, CoarseToFineAsksForFewWays) {

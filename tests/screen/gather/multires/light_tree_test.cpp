@@ -117,8 +117,9 @@ TEST_F(LightTreeTest, SameTwice) {
   EXPECT_TRUE(std::equal(once.begin(), once.end(), again.begin()));
 }
 
-// The row of the soft cut, with 16 sub-lights for each of 1024 lights: 1 % of every one of them at every pixel.
-// Measured: 0.97 and 0.70 % at 192 x 192.
+// The row of the soft cut, with 16 sub-lights for each of 1024 lights: 1 % of every one of them at every pixel. Were
+// its nodes disks, however long they are and whatever of them the horizon cuts off, it would be 0.97 and 0.70 %.
+// Measured: 0.20 and 0.48 %.
 TEST_F(LightTreeTest, TheCutIsEveryCandidateAtEveryPixel) {
   for (const char* name : {"cornell", "room"}) {
     const Scene scene = load_scene(source_dir() / "data" / (std::string(name) + ".glb"));
@@ -141,7 +142,7 @@ TEST_F(LightTreeTest, TheCutIsEveryCandidateAtEveryPixel) {
     const double count = double(all.pixels.size());
     const double rmse = std::sqrt(squared / count) / (mean / count);
     RecordProperty(name, std::to_string(rmse));
-    EXPECT_LT(rmse, 0.01) << name;
+    EXPECT_LT(rmse, 0.006) << name;
     EXPECT_GT(rmse, 1e-5) << name << ": the same picture twice";
   }
 }
