@@ -25,7 +25,7 @@ using screen::LightPart;
 std::filesystem::path file(const std::string& name) { return source_dir() / "data" / (name + ".glb"); }
 
 /// By 90 degrees about an axis.
-Scene turned(const Scene& scene, int axis) {
+Scene quarter_turned(const Scene& scene, int axis) {
   glm::vec3 about(0.0f);
   about[axis] = 1.0f;
   glm::mat3 turn = rotation(about, 90.0f);
@@ -116,7 +116,7 @@ TEST_P(TurnedScene, LooksTheSame) {
   if (GetParam().scene == std::string("room")) options_.light = LightPart::indirect;
   const Image ref = picture(scene_, options_);
   for (int axis = 0; axis < 3; ++axis) {
-    const double deviation = rmse_percent(picture(turned(scene_, axis), options_), ref);
+    const double deviation = rmse_percent(picture(quarter_turned(scene_, axis), options_), ref);
     const double limit = GetParam().limits_percent[size_t(axis)];
     const bool by_lights = GetParam().gi != Gi("volume");
     expect_of_frame(

@@ -18,5 +18,6 @@ void main() {
   if (i >= count) return;
   LightNode node = nodes[first_of_level(level) + i];
   vec3 normal = octahedral_decode(unpackSnorm2x16(node.normal));
-  lights[i] = VirtualLight(node.position, node.area_m2, normal, node.kind, node.flux, node.cluster);
+  lights[i] = VirtualLight(node.position, node.area_m2, normal, node.kind & NODE_KIND_BITS, node.flux,
+                           node.kind >> NODE_CLUSTER_SHIFT);
 }

@@ -49,7 +49,7 @@ float height_over(float height, float reach) {
 // @param w  from the point. The others as disk_to_point() has them.
 float form_of_sum(Receiver at, int node, bool few, vec3 w, float height, float along, float facing, float squared,
                   float area_m2) {
-  vec4 spread = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 4);
+  vec4 spread = texelFetch(node_texels, LIGHT_NODE_TEXELS * node + 3);
   vec2 turned = unpackHalf2x16(floatBitsToUint(spread.w));
   float more = 0.5 * dot(spread.xyz, spread.xyz), up_stretch = dot(at.normal, spread.xyz);
   float w_stretch = dot(w, spread.xyz), off_plane = turned.x * turned.x * area_m2;
@@ -81,8 +81,9 @@ SeenNode seen_node(Receiver at, int node, int level) {
                           : form_of_sum(at, node, level == 1, w, height, along, facing, squared, place.w);
   form = min(form, 0.5 * (1.0 + facing) / max(place.w, 1e-30));  // of the whole plane: none of its disks gives more
   bool gives = has_light && (level > 1 || min(along, above) > 0.0);
-  return SeenNode(gives ? light.rgb * form : vec3(0.0), squared, bounds.x,
-                  floatBitsToInt(bounds.w) == VIRTUAL_LIGHT_EMITTED, has_light);
+  int kind = floatBitsToInt(bounds.w);
+  return SeenNode(gives ? light.rgb * form : vec3(0.0), squared, level == 0 ? 0.0 : node_size(place.w, kind),
+                  (kind & NODE_KIND_BITS) == VIRTUAL_LIGHT_EMITTED, has_light);
 }
 
 void add_light(vec3 irradiance, bool emitted, inout Irradiance sum) {
@@ -144,7 +145,7 @@ Irradiance irradiance_of_lights(Receiver at) {
     while (seen_roots != 0u) {
       int k = begin + findLSB(seen_roots);
       seen_roots &= seen_roots - 1u;
-      int cluster = floatBitsToInt(texelFetch(node_texels, LIGHT_NODE_TEXELS * (first + k) + 3).z);
+      int cluster = floatBitsToInt(texelFetch(node_texels, LIGHT_NODE_TEXELS * (first + k) + 2).w) >> NODE_CLUSTER_SHIFT;
       float visibility = area_light_visibility(cluster, area_lights[cluster], at.position, at.geometric);
       add_root(at, k, visibility, sum);
     }

@@ -12,32 +12,36 @@ SHARED_BEGIN
 #define NO_FLAT_NODE -3.0e38f  // rise_m of a node whose parts face different ways
 
 // Texels of four numbers each in a node.
-#define LIGHT_NODE_TEXELS 5
+#define LIGHT_NODE_TEXELS 4
 
-// std430, 80 bytes; gathers load its first three vectors of four, and of nodes that are no leaves the last one. Dark
+// std430, 64 bytes; gathers load its first three vectors of four, and of nodes that are no leaves the last one. Dark
 // nodes have no flux, and nothing below them has any.
 struct LightNode {
-  vec3 position;      // mean of its parts, by flux; centred frame
-  float area_m2;      // of a disk that is spread as its parts are, at least surface_m2
-  vec3 flux;          // sum [W]
-  uint normal;        // octahedral, two times 16 bits: mean by flux
-  float size_m2;      // what a point's squared distance is compared with: light_tree.h; < 0: parts stay apart
-  float radius_m;     // of a ball around its position that holds its parts
-  float rise_m;       // smallest height over its plane of a point that any of its parts lights; NO_FLAT_NODE: any
-  int kind;           // VIRTUAL_LIGHT_*
-  float variance_m2;  // mean squared distance of its flux from its position; a square's is a sixth of its area
-  float mean_normal;  // length of the mean normal by flux, 1 where all are alike
-  int cluster;
-  float surface_m2;  // sum of its parts' areas
+  vec3 position;    // mean of its parts, by flux; centred frame
+  float area_m2;    // of a disk that is spread as its parts are, at least as large as they are together
+  vec3 flux;        // sum [W]
+  uint normal;      // octahedral, two times 16 bits: mean by flux
+  float lesser_m2;  // the parts' areas summed, or less than 0: the area of that disk, less, where area_m2 is their sum
+  float radius_m;   // of a ball around its position that holds its parts
+  float rise_m;     // smallest height over its plane of a point that any of its parts lights; NO_FLAT_NODE: any
+  int kind;         // VIRTUAL_LIGHT_*, NODE_STAYS_APART, and from NODE_CLUSTER_SHIFT on the cluster
   // How its flux is spread otherwise than a disk's: along `stretch`, in its plane, and across that. Half the square of
   // its length is by how much the variance along it is more than the mean of both. [m]
   vec3 stretch;
-  uint turned;  // packHalf2x16: standard deviation off its plane over the root of its area; mean_normal
+  uint turned;  // packHalf2x16: standard deviation off its plane over the root of its area; length of the mean normal
+                // by flux, 1 where all are alike
 };
+#define NODE_KIND_BITS 0x7f
+#define NODE_STAYS_APART 0x80  // its parts have no irradiance together
+#define NODE_CLUSTER_SHIFT 8
 #ifdef __cplusplus
-static_assert(sizeof(LightNode) == 80 && offsetof(LightNode, size_m2) == 32 && offsetof(LightNode, variance_m2) == 48 &&
-              offsetof(LightNode, stretch) == 64);
+static_assert(sizeof(LightNode) == 64 && offsetof(LightNode, lesser_m2) == 32 && offsetof(LightNode, stretch) == 48);
 #endif
+
+// What a point's squared distance is compared with: light_tree.h; < 0: parts stay apart.
+SHARED_FUNCTION float node_size(float area_m2, int kind) {
+  return (kind & NODE_STAYS_APART) != 0 ? -(area_m2 + 1e-30f) : area_m2 + 1e-30f;
+}
 
 // Share of a node's irradiance that comes from itself and not from its parts: 0 up to a squared distance of `zone`
 // sizes, 1 from twice that on, and linear in squared distance between; 0 where parts stay apart.

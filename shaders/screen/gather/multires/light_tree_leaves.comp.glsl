@@ -17,6 +17,6 @@ void main() {
   int place = chunk_counts[int(group_index()) * cluster_count + int(cluster)];
   for (int s = 0; s < t; ++s) place += clusters[s] == cluster ? 1 : 0;
   LightNode node = leaf_at(leaf);
-  node.cluster = int(cluster);
+  node.kind |= int(cluster) << NODE_CLUSTER_SHIFT;
   nodes[first_of_level(0) + (first_root[cluster] << (2 * top_level)) + place] = node;
 }
