@@ -35,4 +35,21 @@ inline Around reachable_cells(const VoxelGrid& voxels, glm::ivec3 centre) {
   return reached | edge;
 }
 
+/// Calls visit(number of a side) for the sides around side i that may show the same surface: those of 3^3 cells that
+/// can be reached, with normals within 45 degrees.
+template <class Visit>
+void for_sides_alike(const VoxelGrid& voxels, size_t i, const Visit& visit) {
+  const std::vector<shared::Side>& sides = voxels.sides();
+  const glm::ivec3 centre = shared::cell_coord(voxels.grid(), sides[i].cell);
+  const Around reached = reachable_cells(voxels, centre);
+  for (size_t k = 0; k < reached.size(); ++k) {
+    if (!reached[k]) continue;
+    const glm::uvec2 own = voxels.cell_sides(centre + around_offset(k));
+    const size_t last = own.x + shared::count_bits(own.y & 63u);
+    for (size_t s = own.x; s < last; ++s) {
+      if (glm::dot(sides[s].normal, sides[i].normal) >= SIMILAR_NORMAL_COSINE) visit(s);
+    }
+  }
+}
+
 }  // namespace volgi

@@ -50,19 +50,11 @@ SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, co
   }
   SideIrradiance mean{std::vector<glm::vec4>(count), std::vector<glm::vec4>(count)};
   for_each_side(count, [&](size_t i) {
-    const glm::ivec3 centre = shared::cell_coord(voxels.grid(), sides[i].cell);
-    const Around reached = reachable_cells(voxels, centre);
     Mean first, rest;
-    for (size_t k = 0; k < reached.size(); ++k) {
-      if (!reached[k]) continue;
-      const glm::uvec2 own = voxels.cell_sides(centre + around_offset(k));
-      const size_t last = own.x + shared::count_bits(own.y & 63u);
-      for (size_t s = own.x; s < last; ++s) {
-        if (glm::dot(sides[s].normal, sides[i].normal) < SIMILAR_NORMAL_COSINE) continue;
-        first.add(direct[s], weight_of(sides[s]));
-        rest.add(indirect[s], weight_of(sides[s]));
-      }
-    }
+    for_sides_alike(voxels, i, [&](size_t s) {
+      first.add(direct[s], weight_of(sides[s]));
+      rest.add(indirect[s], weight_of(sides[s]));
+    });
     mean.direct[i] = first.clamped();
     mean.indirect[i] = rest.clamped();
   });

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "propagation/light_in/gather_steadied.h"
+#include "propagation/reachable_cells_internal.h"
 #include "propagation/side_loops.h"
 
 namespace volgi {
@@ -86,20 +87,38 @@ void FinalGatherCpu::iterate(const VoxelGrid& voxels, std::span<const glm::vec3>
   }
 }
 
-const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const EmbreeScene& embree,
-                                                  std::span<const glm::vec3> sent, const SideIrradiance& volume,
-                                                  const std::vector<bool>& seen, int rays) {
+/// Of all sides, but for what comes round. Emission's arrival is by rays as well: of tilted surfaces the volume has a
+/// part of it in later orders, and only the sum of all is right. Emitters fill sides as they come: flux and area are
+/// means.
+std::vector<glm::vec3> FinalGatherCpu::radiosity_of(const VoxelGrid& voxels, const Sent& sent) const {
+  const std::vector<shared::Side>& sides = voxels.sides();
+  const float least_m2 = LEAST_SIDE_AREA * voxels.grid().cell_size_m * voxels.grid().cell_size_m;
+  std::vector<glm::vec3> own(voxels.side_count()), emitted(sent.emitted.size());
+  for_each_side(emitted.size(), [&](size_t i) {
+    float area_m2 = 0.0f;
+    for_sides_alike(voxels, i, [&](size_t s) {
+      emitted[i] += sent.emitted[s];
+      area_m2 += sides[s].area_m2;
+    });
+    emitted[i] /= std::max(area_m2, least_m2);
+  });
+  for_each_side(own.size(), [&](size_t s) {
+    Gathered arrival;
+    if (!emitted.empty()) arrival.add(all_.row(s), emitted);
+    own[s] = sent.reflected[s] / std::max(sides[s].area_m2, least_m2) + sides[s].albedo * arrival.mean();
+  });
+  return own;
+}
+
+const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const EmbreeScene& embree, const Sent& sent,
+                                                  std::span<const glm::vec4> volume, const std::vector<bool>& seen,
+                                                  int rays) {
   follow(voxels, embree, seen, rays);
   const size_t count = voxels.side_count();
   radiosity_.resize(count);
   received_.resize(count);
-  const float h = voxels.grid().cell_size_m;
-  std::vector<glm::vec3> own(count);  // radiosity, but for what comes round
-  for_each_side(count, [&](size_t s) {
-    const shared::Side& side = voxels.sides()[s];
-    own[s] = sent[s] / std::max(side.area_m2, LEAST_SIDE_AREA * h * h) + side.albedo * glm::vec3(volume.direct[s]);
-    received_[s] = glm::vec3(volume.indirect[s]);
-  });
+  const std::vector<glm::vec3> own = radiosity_of(voxels, sent);
+  for_each_side(count, [&](size_t s) { received_[s] = glm::vec3(volume[s]); });
   iterate(voxels, own);
   std::vector<Gathered> gathered(count);
   for_each_side(seen_sides_.size(), [&](size_t i) {
@@ -107,7 +126,7 @@ const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const
     g.add(all_.row(seen_sides_[i]), radiosity_);
     if (more_.rays() > 0) g.add(more_.row(i), radiosity_);
   });
-  irradiance_ = steadied(voxels, gathered, volume.indirect);
+  irradiance_ = steadied(voxels, gathered, volume);
   report_.seen_sides = seen_sides_.size();
   report_.rays = all_.rows() * size_t(all_.rays()) + more_.rows() * size_t(more_.rays());
   return irradiance_;

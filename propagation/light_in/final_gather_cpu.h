@@ -32,13 +32,17 @@ class FinalGatherCpu {
     int iterations = 0;
   };
 
-  /// @param sent    flux A B_0 that each side sends of light that no side had before [W].
-  /// @param volume  what sides have by the volume. Its `direct` stays: what they return of it is sent, too.
+  /// Flux A B_0 by side [W].
+  struct Sent {
+    std::vector<glm::vec3> reflected;  // of light that no side had before
+    std::vector<glm::vec3> emitted;    // whose arrival is not wanted, only what sides return of it; empty: none
+  };
+  /// @param volume  irradiance of sides but for the arrival of what is emitted.
   /// @param seen    by cell: whether its sides are wanted (cells_seen()).
   /// @param rays    of each of these.
-  /// @return in place of `volume.indirect`: of the others as it is there.
-  const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree, std::span<const glm::vec3> sent,
-                                    const SideIrradiance& volume, const std::vector<bool>& seen, int rays);
+  /// @return in place of `volume`: of the others as it is there.
+  const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree, const Sent& sent,
+                                    std::span<const glm::vec4> volume, const std::vector<bool>& seen, int rays);
   const Report& report() const { return report_; }
   size_t bytes() const;
   /// What bytes() comes to at most.
@@ -46,6 +50,7 @@ class FinalGatherCpu {
 
  private:
   void follow(const VoxelGrid& voxels, const EmbreeScene& embree, const std::vector<bool>& seen, int rays);
+  std::vector<glm::vec3> radiosity_of(const VoxelGrid& voxels, const Sent& sent) const;
   void iterate(const VoxelGrid& voxels, std::span<const glm::vec3> own);
 
   std::vector<shared::Side> sides_;  // that rows are of

@@ -100,7 +100,7 @@ class Steadier {
     const shared::Side& side = voxels_.sides()[i];
     const glm::ivec3 cell = shared::cell_coord(voxels_.grid(), side.cell);
     const glm::vec3 volume(irradiance_[i]);
-    const Sums near = around(i, cell);
+    const Sums near = around(i);
     if (!(near.area > 0.0f)) return volume;
     const Sums wide = regions_[0].at(cell, side.face);
     const float own = trust(wide.relative_variance() / near.rays);
@@ -112,19 +112,9 @@ class Steadier {
  private:
   Sums of(size_t s) const { return sums_of(voxels_.sides()[s], gathered_[s], glm::vec3(irradiance_[s])); }
 
-  /// Sides of 3^3 cells that may show the same surface, as side_irradiance() takes them.
-  Sums around(size_t i, glm::ivec3 centre) const {
+  Sums around(size_t i) const {
     Sums sums;
-    const Around reached = reachable_cells(voxels_, centre);
-    for (size_t k = 0; k < reached.size(); ++k) {
-      if (!reached[k]) continue;
-      const glm::uvec2 own = voxels_.cell_sides(centre + around_offset(k));
-      const size_t last = own.x + shared::count_bits(own.y & 63u);
-      for (size_t s = own.x; s < last; ++s) {
-        if (glm::dot(voxels_.sides()[s].normal, voxels_.sides()[i].normal) >= SIMILAR_NORMAL_COSINE)
-          sums.add(of(s), 1.0f);
-      }
-    }
+    for_sides_alike(voxels_, i, [&](size_t s) { sums.add(of(s), 1.0f); });
     return sums;
   }
 

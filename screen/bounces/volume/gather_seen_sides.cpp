@@ -13,22 +13,31 @@ std::vector<glm::vec4> positions_of(const GBuffer& gbuffer) {
   return positions;
 }
 
+/// After a first bounce on the screen emission has been reflected, and its arrival is wanted with all the rest.
+FinalGatherCpu::Sent sent_by(const VolumeCpu& volume) {
+  const bool after_first_bounce = volume.options().source == VolumeOptions::Source::first_bounce;
+  FinalGatherCpu::Sent sent;
+  const SideFlux& flux = volume.flux();
+  for (size_t s = 0; s < flux.punctual.size(); ++s) {
+    sent.reflected.emplace_back(flux.punctual[s]);
+    if (after_first_bounce) sent.reflected.back() += glm::vec3(flux.emitted[s]);
+    if (!after_first_bounce && flux.emits) sent.emitted.emplace_back(flux.emitted[s]);
+  }
+  return sent;
+}
+
 }  // namespace
 
 const SideIrradiance* GatherSeenSides::run(const VolumeCpu& volume, const EmbreeScene& embree, const GBuffer& gbuffer,
                                            gl::PassTimer& timer) {
   const VoxelGrid& voxels = volume.voxels();
-  ran_ = gathers_seen_sides(volume.options()) && cell_count(voxels.grid()) <= FinalGatherCpu::MOST_CELLS;
+  const bool streams =
+      streaming_sky(embree.scene(), volume.options()) != nullptr;  // whose arrival no ray of a side knows
+  ran_ = gathers_seen_sides(volume.options()) && !streams && cell_count(voxels.grid()) <= FinalGatherCpu::MOST_CELLS;
   if (!ran_) return nullptr;
   const auto scope = timer.scope(name);
-  const bool lights = volume.options().source == VolumeOptions::Source::lights;  // whose emission arrives in `direct`
-  std::vector<glm::vec3> sent(voxels.side_count());
-  for (size_t s = 0; s < sent.size(); ++s) {
-    sent[s] = glm::vec3(volume.flux().punctual[s]);
-    if (!lights) sent[s] += glm::vec3(volume.flux().emitted[s]);
-  }
   irradiance_.direct = volume.irradiance().direct;
-  irradiance_.indirect = gather_.run(voxels, embree, sent, volume.irradiance(),
+  irradiance_.indirect = gather_.run(voxels, embree, sent_by(volume), volume.irradiance().indirect,
                                      cells_seen(voxels.grid(), positions_of(gbuffer)), volume.options().gather_rays);
   return &irradiance_;
 }
