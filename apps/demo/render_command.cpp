@@ -11,6 +11,7 @@
 #include "apps/volgi/reading_options.h"
 #include "apps/volgi/volume_options.h"
 #include "core/error.h"
+#include "screen/frame/quality.h"
 #include "screen/frame/registry.h"
 
 namespace volgi::demo {
@@ -102,6 +103,13 @@ std::string render_command(const Session& session, const std::filesystem::path& 
   add_light(document, light_file, all);
   const Arguments frame = frame_arguments(settings.frame, settings.grid_fits_scene);
   all.insert(all.end(), frame.begin(), frame.end());
+  // What nobody has chosen here `volgi render` would choose.
+  const auto chosen = parameters_set(settings.frame);
+  for (const std::string& value : screen::values_left_alone(screen::Needs{}, settings.frame)) {
+    const std::string name = value.substr(0, value.find('='));
+    const bool said = std::any_of(chosen.begin(), chosen.end(), [&](const auto& c) { return c.first->name == name; });
+    if (!said) all.insert(all.end(), {"--set", value});
+  }
   // Said always: without it `volgi render` averages several where something is half transparent.
   all.insert(all.end(), {"--samples", fmt::format("{}", std::max(session.picture().samples(), 1))});
   all.insert(all.end(), {"--exposure", fmt::format("{:g}", session.exposure_ev())});

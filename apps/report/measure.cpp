@@ -36,13 +36,17 @@ float exposure_of(const ReportReference& reference) {
 
 int frames_of(const Setting& setting, const MeasureContext& context) { return setting.frames.value_or(context.frames); }
 
-std::string command_of(const ReportScene& scene, const Setting& setting, const std::string& light,
+std::string command_of(const ReportScene& scene, const Setting& setting, const RenderTask& task,
                        const MeasureContext& context) {
   const int count = frames_of(setting, context);
   if (setting.renderer == ADDED_PICTURE) return fmt::format("cp {} point.exr", setting.options.at(1));
   const bool frames = setting.renderer == "render";
+  std::vector<std::string> options = setting.options;
+  if (frames) {
+    for (const std::string& o : options_left_alone(task)) options.push_back(o);
+  }
   return fmt::format("volgi {} {}{} {} --light {} --size {}x{}{} -o point.exr{}", setting.renderer, scene.path.string(),
-                     scene.light_arguments, fmt::join(setting.options, " "), light, context.size.x, context.size.y,
+                     scene.light_arguments, fmt::join(options, " "), task.light, context.size.x, context.size.y,
                      frames ? fmt::format(" --frames {}", count) : "", frames ? " --stats point.json" : "");
 }
 
@@ -167,13 +171,13 @@ Json measure_point(const ReportScene& scene, const Setting& setting, const std::
   point["baseline"] = setting.baseline;
   point["light_arguments"] = scene.light_arguments;
   point["triangles"] = scene.scene.triangle_count();
-  point["command"] = command_of(scene, setting, light, context);
+  RenderTask task{scene.scene,     scene.camera,   context.size, light, frames_of(setting, context),
+                  setting.options, context.context};
+  point["command"] = command_of(scene, setting, task, context);
   point["reference"] = all_bounces.path.string();
   point["reference_command"] = all_bounces.command;
   point["compare"] = fmt::format("volgi compare {} point.exr --light {}", all_bounces.path.string(), light);
   try {
-    RenderTask task{scene.scene,     scene.camera,   context.size, light, frames_of(setting, context),
-                    setting.options, context.context};
     const Rendering rendering = context.renderers.at(setting.renderer)(task);
     add_times(point, rendering);
     if (takes_more_times(setting, light)) {

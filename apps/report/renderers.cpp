@@ -140,6 +140,19 @@ void check_options(const std::string& renderer, const std::vector<std::string>& 
   if (renderer == "reference") tracer_options(options);
 }
 
+std::vector<std::string> options_left_alone(const RenderTask& task) {
+  const AskedFrame asked = frame_options(task.options, task.light, task.size);
+  if (asked.by_quality || asked.command.automatic()) return {};
+  screen::FrameOptions fitted = asked.options;
+  const auto fit = asked.command.fit(task.scene, glm::vec3(task.camera.world_from_camera[3]), 0, fitted);
+  std::vector<std::string> added;
+  for (const std::string& value : screen::values_left_alone(fit.needs, asked.options)) {
+    added.emplace_back("--set");
+    added.push_back(value);
+  }
+  return added;
+}
+
 std::map<std::string, Renderer> standard_renderers() {
   return {{"render", render_frames}, {"reference", trace_paths}, {ADDED_PICTURE, read_added_picture}};
 }

@@ -46,6 +46,10 @@ std::map<std::string, Renderer> standard_renderers();
 /// @throws Error(usage).
 void check_options(const std::string& renderer, const std::vector<std::string>& options);
 
+/// Without --quality a technique is measured as its options have it by themselves, while `volgi render` chooses some of
+/// them by the scene: what has to be added for the command to make the same picture.
+std::vector<std::string> options_left_alone(const RenderTask& task);
+
 /// Frames before the timed ones, as `volgi render --frames N` has them.
 inline int warm_up_frames(int frames) { return frames > 1 ? 2 : 0; }
 

@@ -70,7 +70,7 @@ void FinalGatherCpu::iterate(const VoxelGrid& voxels, std::span<const glm::vec3>
   sums.set(voxels, nullptr);
   const glm::dvec3 area = sums([&](size_t s) { return glm::dvec3(double(sides[s].area_m2)); });
   radiate();
-  for (report_.iterations = 1; report_.iterations <= MOST_ITERATIONS; ++report_.iterations) {
+  for (report_.iterations = 1;; ++report_.iterations) {
     for_each_side(count, [&](size_t s) {
       Gathered g;
       g.add(all_.row(s), radiosity_);
@@ -83,7 +83,7 @@ void FinalGatherCpu::iterate(const VoxelGrid& voxels, std::span<const glm::vec3>
     const glm::dvec3 changed = sums([&](size_t s) {
       return double(sides[s].area_m2) * glm::dvec3(glm::abs(change[s]) / glm::max(received_[s], 1e-30f));
     });
-    if (glm::all(glm::lessThanEqual(changed, SETTLED * area))) break;
+    if (report_.iterations == MOST_ITERATIONS || glm::all(glm::lessThanEqual(changed, SETTLED * area))) break;
   }
 }
 

@@ -89,6 +89,18 @@ std::vector<Chosen> apply_needs(const Needs& needs, std::span<const std::string>
   return chosen;
 }
 
+std::vector<std::string> values_left_alone(const Needs& needs, const FrameOptions& options) {
+  FrameOptions fitted = options;
+  apply_needs(needs, {}, fitted);
+  std::vector<std::string> values;
+  for (const Parameter* p : parameters()) {
+    const auto own = p->get(options.settings);
+    if (own && own != p->get(fitted.settings))
+      values.push_back(fmt::format("{}={}", p->name, value_text(*p, options.settings)));
+  }
+  return values;
+}
+
 bool Climb::next(const Image& answer) {
   if (rung_++ == 0) {
     last_ = answer;

@@ -46,6 +46,9 @@ struct Chosen {
 /// @return what has changed.
 std::vector<Chosen> apply_needs(const Needs& needs, std::span<const std::string> keep, FrameOptions& options);
 
+/// Parameters' own values that apply_needs() would change, NAME=VALUE each: what a command has to say for them to stay.
+std::vector<std::string> values_left_alone(const Needs& needs, const FrameOptions& options);
+
 /// Quality::truth climbs from rung to rung until two successive answers differ by less than ENOUGH. Pure.
 class Climb {
  public:

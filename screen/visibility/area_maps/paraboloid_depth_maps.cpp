@@ -11,8 +11,11 @@
 namespace volgi::screen {
 namespace {
 
-// Tiles that do not fit are drawn where they are found: slower, never wrong.
-constexpr GLuint kTileCapacity = 1u << 19;
+// Layers are drawn so many tiles at once, with room for this many triangles in each in the mean. What does not fit is
+// drawn where it is found: slower.
+constexpr size_t kTilesAtOnce = size_t(1) << 18;
+constexpr size_t kTrianglesPerTile = 12, kLeastCapacity = size_t(1) << 19;
+constexpr size_t kTilesPerBand = 256;
 constexpr size_t kHeadBytes = 2 * sizeof(GLuint);
 constexpr size_t kTileBytes = 2 * sizeof(GLuint);
 constexpr GLuint kTileGroups = 1024;                // share out the tiles; enough to fill a GPU
@@ -24,13 +27,21 @@ size_t tiles_of(int resolution, int layers) {
   return across * across * size_t(layers);
 }
 
+int layers_at_once(int resolution, int layers) {
+  return std::min(layers, int(std::max(kTilesAtOnce / tiles_of(resolution, 1), size_t(1))));
+}
+
+GLuint tile_capacity(int resolution, int layers) {
+  return GLuint(std::max(kTrianglesPerTile * tiles_of(resolution, layers_at_once(resolution, layers)), kLeastCapacity));
+}
+
 }  // namespace
 
 ParaboloidDepthMaps::ParaboloidDepthMaps(int resolution, int layers)
     : resolution_(resolution),
       layers_(layers),
       distance_(gl::Texture::make_2d_array(GL_R32F, resolution, resolution, layers)),
-      tiles_(kHeadBytes + kTileCapacity * kTileBytes),
+      tiles_(kHeadBytes + tile_capacity(resolution, layers) * kTileBytes),
       tile_ends_(tiles_of(resolution, layers) * sizeof(GLuint)) {
   assert(resolution >= 1 && resolution <= 4096 && layers <= MAX_VIRTUAL_AREA_LIGHTS);
   const auto programs = [](const std::vector<std::string>& defines) {
@@ -71,19 +82,28 @@ void ParaboloidDepthMaps::draw(const Programs& programs, const gl::SceneBuffers:
                                int layers) const {
   for (GLsizei done = 0; done < triangles.count; done += kTrianglesPerDispatch) {
     const GLsizei count = std::min(triangles.count - done, kTrianglesPerDispatch);
-    constexpr std::array<GLuint, 2> head{0, kTileCapacity};
-    tiles_.upload(head.data(), sizeof head);
-    tile_ends_.clear();
     programs.triangles.set("first_triangle", triangles.first + done);
     programs.triangles.set("triangle_count", count);
-    programs.triangles.use();
-    gl::dispatch({count, layers, 1}, {LINEAR_GROUP, 1, 1});
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    programs.tiles.set("layers", layers);
-    programs.tiles.use();
-    glDispatchCompute(kTileGroups, 1, 1);
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    const int step = layers_at_once(resolution_, layers_);
+    for (int layer = 0; layer < layers; layer += step)
+      draw_layers(programs, count, layer, std::min(step, layers - layer));
   }
+}
+
+void ParaboloidDepthMaps::draw_layers(const Programs& programs, GLsizei triangles, int first, int layers) const {
+  const std::array<GLuint, 2> head{0, tile_capacity(resolution_, layers_)};
+  tiles_.upload(head.data(), sizeof head);
+  tile_ends_.clear();
+  programs.triangles.set("first_layer", first);
+  programs.triangles.use();
+  const auto bands = GLsizei(std::max(tiles_of(resolution_, 1) / kTilesPerBand, size_t(1)));
+  gl::dispatch({triangles, layers, bands}, {LINEAR_GROUP, 1, 1});
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  programs.tiles.set("first_layer", first);
+  programs.tiles.set("layers", layers);
+  programs.tiles.use();
+  glDispatchCompute(kTileGroups, 1, 1);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
 }
 
 size_t ParaboloidDepthMaps::bytes() const {

@@ -37,6 +37,7 @@ class ParaboloidDepthMaps {
     gl::Program triangles, tiles;
   };
   void draw(const Programs& programs, const gl::SceneBuffers::Triangles& triangles, int layers) const;
+  void draw_layers(const Programs& programs, GLsizei triangles, int first, int layers) const;
 
   int resolution_, layers_;
   gl::Texture distance_;

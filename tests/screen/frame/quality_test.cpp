@@ -33,12 +33,14 @@ TEST(Quality, DefaultOfARoomIsWhatOptionsHave) {
   const FrameOptions before = options;
   const std::vector<screen::Chosen> chosen = screen::apply_needs(needs, {}, options);
   // Options by themselves are the least; commands take what costs a room little beside.
-  ASSERT_EQ(chosen.size(), 2u);
+  ASSERT_EQ(chosen.size(), 3u);
   EXPECT_EQ(chosen[0].name, "grid");
   EXPECT_EQ(chosen[1].name, "ordinates.sources");
   EXPECT_EQ(chosen[1].value, "on");
+  EXPECT_EQ(chosen[2].name, "sides.gather");
+  EXPECT_EQ(chosen[2].value, "64");
   for (const screen::Parameter* p : screen::parameters()) {
-    if (p->name == std::string("ordinates.sources")) continue;
+    if (p->name == std::string("ordinates.sources") || p->name == std::string("sides.gather")) continue;
     EXPECT_EQ(p->get(options.settings), p->get(before.settings)) << p->name;
   }
 }
@@ -48,6 +50,7 @@ TEST(Quality, HasteSparesDirectionsOfSources) {
   screen::apply_recipe("hybrid", options);
   screen::apply_needs(screen::needs_of(Quality::fast, 0, room()), {}, options);
   EXPECT_FALSE(options.of<VolumeOptions>().scheme.many_for_sources);
+  EXPECT_EQ(options.of<VolumeOptions>().gather_rays, 0);
   screen::apply_needs(screen::needs_of(Quality::fine, 0, room()), {}, options);
   EXPECT_TRUE(options.of<VolumeOptions>().scheme.many_for_sources);
 }

@@ -1,12 +1,15 @@
 #version 450 core
-// One thread for each triangle and layer: draws the triangle where its bounds hold few texels, else lists the tiles
-// that it may touch for paraboloid_depth_maps_tiles.comp.glsl.
+// One thread for each triangle, layer and band of tile rows: draws the triangle where its bounds hold few texels, else lists
+// the tiles that it may touch for paraboloid_depth_maps_tiles.comp.glsl. Bands, because llvmpipe ends an invocation after
+// 65535 turns of all its loops without a word, and a triangle that is drawn here for want of room in the list takes one for
+// each texel.
 #include "screen/visibility/area_maps/paraboloid_triangle.glsl"
 #include "shared/group_sizes.shared.h"
 
 layout(local_size_x = LINEAR_GROUP) in;
 uniform int first_triangle;
 uniform int triangle_count;
+uniform int first_layer;
 
 #define FEW_TEXELS (TILE_TEXELS * TILE_TEXELS)
 
@@ -61,8 +64,10 @@ bool tile_may_touch(LayerTriangle t, ivec2 tile) {
   return true;
 }
 
-void list_tiles(LayerTriangle t, int triangle, ivec2 low, ivec2 high) {
-  for (int y = low.y / TILE_TEXELS; y <= high.y / TILE_TEXELS; ++y) {
+void list_tiles(LayerTriangle t, int triangle, ivec2 low, ivec2 high, ivec2 rows) {
+  low.y = max(low.y / TILE_TEXELS, rows.x);
+  high.y = min(high.y / TILE_TEXELS, rows.y - 1);
+  for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x / TILE_TEXELS; x <= high.x / TILE_TEXELS; ++x) {
       if (!tile_may_touch(t, ivec2(x, y))) continue;
       uint slot = atomicAdd(head.count, 1u);
@@ -84,7 +89,7 @@ void main() {
   if (index >= triangle_count) return;
   int triangle = first_triangle + index;
   LayerTriangle t;
-  if (!layer_triangle(int(gl_GlobalInvocationID.y), triangle, t)) return;
+  if (!layer_triangle(first_layer + int(gl_GlobalInvocationID.y), triangle, t)) return;
   Bounds bounds = Bounds(vec2(2.0), vec2(-2.0));
   vec2 crossing = vec2(0.0);
   int crossings = 0;
@@ -97,9 +102,11 @@ void main() {
   ivec2 size = high - low + 1;
   if (min(size.x, size.y) <= 0) return;
   if (size.x * size.y > FEW_TEXELS) {
-    list_tiles(t, triangle, low, high);
+    int bands = int(gl_NumWorkGroups.z), band = int(gl_GlobalInvocationID.z);
+    list_tiles(t, triangle, low, high, ivec2(band, band + 1) * tiles_across() / bands);
     return;
   }
+  if (gl_GlobalInvocationID.z != 0u) return;
   ivec2 texel = low;
   for (int i = 0; i < size.x * size.y; ++i) {  // one loop, as neighbouring triangles have other shapes
     draw_texel(t, texel);

@@ -5,13 +5,14 @@
 
 #define TILES 4  // of a group at once
 layout(local_size_x = TILE_TEXELS, local_size_y = TILES) in;
+uniform int first_layer;
 uniform int layers;
 
 void main() {
   int across = tiles_across();
-  int end = layers * across * across;
+  int end = (first_layer + layers) * across * across;
   int step = int(gl_NumWorkGroups.x) * TILES;
-  for (int tile = int(gl_WorkGroupID.x) * TILES + int(gl_LocalInvocationID.y); tile < end; tile += step) {
+  for (int tile = first_layer * across * across + int(gl_WorkGroupID.x) * TILES + int(gl_LocalInvocationID.y); tile < end; tile += step) {
     uint entry = tile_ends[tile];
     if (entry == 0u) continue;
     int layer = tile / (across * across);

@@ -151,6 +151,25 @@ TEST_F(ParaboloidDepthMaps, FineMeshesHaveNoHoles) {
               1.0);
 }
 
+// More large triangles than the list of tiles has room for, the nearest last: llvmpipe ended their drawing after 65535
+// turns, and light came through.
+TEST_F(ParaboloidDepthMaps, ManyLargeTrianglesInFineMaps) {
+  constexpr int resolution = 512, sheets = 96, lights = 8;
+  Scene scene;
+  const int grey = add_material(scene, glm::vec3(0.5f));
+  for (int k = sheets; k > 0; --k)
+    add_quad(scene, grey, {-1000.0f, 1.0f + 0.01f * float(k), -1000.0f}, {2000.0f, 0, 0}, {0, 0, 2000.0f});
+  AreaLightMaps maps(context(), scene, std::vector(lights, area_light(glm::vec3(0.0f), {0, 1, 0})), resolution);
+  const std::vector<float> distances = maps.distances();
+  int wrong = 0;
+  for (int i = 0; i < resolution * resolution * lights; ++i) {
+    const glm::vec2 disk = disk_of_texel(i % resolution, i / resolution % resolution, resolution);
+    const float cosine = (1.0f - glm::dot(disk, disk)) / (1.0f + glm::dot(disk, disk));
+    if (cosine > 0.01f && std::abs(distances[size_t(i)] * cosine / 1.01f - 1.0f) > 1e-3f) ++wrong;
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
 TEST_F(ParaboloidDepthMaps, TheSurfaceOfTheLightDoesNotHideIt) {
   Scene scene;
   const int grey = add_material(scene, glm::vec3(0.5f));
