@@ -9,6 +9,7 @@
 
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/light_in/gather_steadied.h"
+#include "tests/propagation/rooms_with_slit.h"
 #include "tests/support/invariance.h"
 #include "tests/support/paths.h"
 #include "tests/support/turned.h"
@@ -81,20 +82,6 @@ TEST(FinalGather, ATiltedFurnaceIsEven) {
   EXPECT_NEAR(now.mean / right, 1.0, 0.02);  // 1.013: the areas of sides at the edges
   EXPECT_LT(now.deviation, 0.015 * right);
   EXPECT_LT(now.deviation, 0.5 * before.deviation);
-}
-
-/// Two rooms, a wall of 15 cm between them with a slit from floor to ceiling, a lamp in the first.
-Scene rooms_with_slit(float width_m) {
-  Scene scene;
-  const int grey = add_material(scene, glm::vec3(0.7f));
-  constexpr float wall = 0.075f, half = 1.0f;
-  add_box_inside(scene, grey, glm::vec3(0.0f), {2.0f * half + wall, half, half});
-  const float begins[2] = {-half - 0.01f, 0.21f}, ends[2] = {0.21f - width_m, half + 0.01f};
-  for (int i = 0; i < 2; ++i)
-    add_box(scene, grey, {0.0f, 0.0f, 0.5f * (begins[i] + ends[i])},
-            {wall, half + 0.01f, 0.5f * (ends[i] - begins[i])});
-  scene.lights.push_back(spot_light({-0.5f, 0.5f, -0.5f}, {-1.0f, 0.0f, 0.0f}, 20.0f, 40.0f, glm::vec3(10.0f)));
-  return scene;
 }
 
 // Behind a slit of 1.8 to 3.4 cells the volume alone has 0.75 to 1.1 of the light (narrow_passages_test.cpp).
