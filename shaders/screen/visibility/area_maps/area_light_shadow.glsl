@@ -33,12 +33,24 @@ float texel_angle(vec2 disk, int resolution) { return 4.0 / (float(resolution) *
 #include "screen/visibility/area_maps/single_shadow.glsl"
 #endif
 
+// A light may have parts in front of the receiver's plane and its middle behind it. All that stands between is behind the
+// plane then, and would not hide the receiver, as what is there does not (shadow_comparison.glsl): light came through
+// walls. So what is looked for instead is a point of the air as far in front of the plane, which anything nearer hides.
+ShadowReceiver in_front_of_its_plane(ShadowReceiver receiver) {
+  float behind_m = dot(receiver.position, receiver.normal);
+  if (behind_m <= receiver.error_m) return receiver;
+  vec3 air = receiver.position + 2.0 * behind_m * receiver.normal;
+  if (air.z > 0.0) receiver.position = air;
+  receiver.normal = -normalize(receiver.position);
+  return receiver;
+}
+
 // Share of area light `k` that reaches `position`, 0 to 1; `normal` is the receiver's geometric one, towards the
 // viewer. 0 behind the light, which sends nothing there.
 float area_light_visibility(int k, VirtualAreaLight light, vec3 position, vec3 normal) {
   ShadowReceiver receiver = shadow_receiver(k, light, position, normal);
   if (receiver.position.z <= 0.0) return 0.0;
-  return receiver_visibility(light, receiver);
+  return receiver_visibility(light, in_front_of_its_plane(receiver));
 }
 
 #endif

@@ -172,6 +172,34 @@ TEST_F(AreaLightShadowTest, FiltersAsPrintedAreWiderInTheMiddle) {
   EXPECT_LT(dark_half(printed) / dark_half(own), 1.35f);
 }
 
+/// The middle of a light on the floor of a doorway, 5 cm behind the plane of the wall whose points look for it.
+TEST_F(AreaLightShadowTest, AMiddleBehindTheReceiversPlaneIsHiddenByWallsAndSeenThroughAir) {
+  const shared::VirtualAreaLight in_doorway = area_light({-0.05f, 0, 0}, {0, 1, 0}, 0.15f);
+  std::vector<Receiver> points;
+  for (int i = 0; i < 64; ++i) {
+    const int row = i / 8;
+    points.push_back(receiver({0, 0.3f + 0.25f * float(row), 1.2f + 0.1f * float(i % 8)}, {1, 0, 0}));
+  }
+  for (const bool walled : {true, false}) {
+    Scene scene;
+    const int grey = add_material(scene, glm::vec3(0.5f));
+    add_quad(scene, grey, {0, 0, 1}, {0, 2.5f, 0}, {0, 0, 2});                        // the points' wall
+    if (walled) add_quad(scene, grey, {-0.5f, 0, 0.8f}, {0, 2.5f, 0}, {2.5f, 0, 0});  // the next room ends here
+    update_bounds(scene);
+    AreaLightMaps maps(context(), scene, {in_doorway}, 128);
+    for (const Method method : kMethods) {
+      SCOPED_TRACE(name_of(method));
+      for (const float v : visibility(maps, method, points)) {
+        if (walled) {
+          EXPECT_LE(v, method == Method::convolution ? 0.09f : 0.0f);
+        } else if (method != Method::convolution) {  // whose four terms smear the wall's edge over the points
+          EXPECT_GE(v, 0.8f);                        // nearest to the edge, which the filter reaches; else 1
+        }
+      }
+    }
+  }
+}
+
 TEST_F(AreaLightShadowTest, NothingBehindTheLight) {
   const Scene scene = plate_over_floor();
   AreaLightMaps maps(context(), scene, {kLamp}, 64);
