@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/octahedral.h"
 #include "core/surface.h"
@@ -61,24 +62,95 @@ std::vector<Sender> senders_of(const EmbreeScene& embree, const VirtualLightsFor
 
 /// A ray of a sender, and what it has met.
 struct Carried {
-  glm::vec3 way, flux;
+  size_t sender;
+  glm::vec3 way, flux;  // flux: its part of the sender's
   RayHit hit;
+};
+
+/// Which senders have how many of the rays. Outside of a house the sun sends a hundred times of what it does in the one
+/// room with a window, and rays by flux would all leave the scene. So every fourth ray goes by flux, and of the others
+/// each sender has as many as it would of those that meet something.
+class Sending {
+ public:
+  static constexpr size_t EVERY = 4;
+  static constexpr size_t GROUP = 16;  // senders that count as one: they lie together
+
+  explicit Sending(const std::vector<Sender>& senders)
+      : senders_(senders), by_flux_(sums_of([](size_t) { return 1.0; })) {}
+
+  size_t by_flux(double at) const { return chosen(by_flux_, at); }
+  size_t by_meeting(double at) const { return chosen(by_meeting_.empty() ? by_flux_ : by_meeting_, at); }
+  bool all_meet() const { return by_meeting_.empty(); }
+
+  /// @param met  of `sent` for each group.
+  void learn(std::span<const std::uint32_t> met, std::span<const std::uint32_t> sent) {
+    if (std::equal(met.begin(), met.end(), sent.begin())) return;
+    by_meeting_ = sums_of([&](size_t i) { return (double(met[i / GROUP]) + 1.0) / (double(sent[i / GROUP]) + 1.0); });
+  }
+  /// Of its flux for each ray of a sender, by both ways to choose it (Veach's balance heuristic).
+  float part(size_t sender, size_t rays_by_flux, size_t others) const {
+    const double flux = double(weight_of(senders_[sender]));
+    double expected = double(rays_by_flux) * flux / by_flux_.back();
+    if (all_meet()) return float(1.0 / (expected + double(others) * flux / by_flux_.back()));
+    const double before = sender == 0 ? 0.0 : by_meeting_[sender - 1];
+    expected += double(others) * (by_meeting_[sender] - before) / by_meeting_.back();
+    return float(1.0 / expected);
+  }
+
+ private:
+  template <class Share>
+  std::vector<double> sums_of(const Share& share) const {
+    std::vector<double> sums;
+    for (size_t i = 0; i < senders_.size(); ++i)
+      sums.push_back((sums.empty() ? 0.0 : sums.back()) + double(weight_of(senders_[i])) * share(i));
+    return sums;
+  }
+  static size_t chosen(const std::vector<double>& sums, double at) {
+    return size_t(std::upper_bound(sums.begin(), sums.end() - 1, at * sums.back()) - sums.begin());
+  }
+
+  const std::vector<Sender>& senders_;
+  std::vector<double> by_flux_, by_meeting_;  // the latter: none where all rays have met something
 };
 
 /// Calls take(j, Carried) for each ray that meets something, on all threads.
 template <class Take>
 void carry(const EmbreeScene& embree, const std::vector<Sender>& senders, int sample, size_t rays, const Take& take) {
-  std::vector<double> sums;  // of all up to each
-  for (const Sender& s : senders) sums.push_back((sums.empty() ? 0.0 : sums.back()) + double(weight_of(s)));
-  if (senders.empty()) return;
-  tbb::parallel_for(size_t(0), rays, [&](size_t j) {
-    const double at = (double(j) + 0.5) / double(rays) * sums.back();
-    const Sender& s = senders[size_t(std::upper_bound(sums.begin(), sums.end() - 1, at) - sums.begin())];
+  if (senders.empty() || rays == 0) return;
+  Sending sending(senders);
+  const auto trace = [&](size_t j, size_t sender, Carried& c) {
     const auto n = std::uint32_t(j + size_t(sample) * rays);
-    Carried c{cosine_direction(s.normal, recurrence_in_square(n)),
-              s.flux * (float(sums.back() / double(rays)) / weight_of(s)),
-              {}};
-    if (embree.intersect({s.origin, c.way, FAR, n, {}, {}}, c.hit)) take(j, c);
+    const Sender& s = senders[sender];
+    c = {sender, cosine_direction(s.normal, recurrence_in_square(n)), {}, {}};
+    return embree.intersect({s.origin, c.way, FAR, n, {}, {}}, c.hit);
+  };
+  const size_t first = (rays + Sending::EVERY - 1) / Sending::EVERY, others = rays - first;
+  std::vector<Carried> carried(first);
+  std::vector<std::uint8_t> met(first);
+  tbb::parallel_for(size_t(0), first, [&](size_t i) {
+    const size_t j = i * Sending::EVERY;
+    met[i] = trace(j, sending.by_flux((double(j) + 0.5) / double(rays)), carried[i]) ? 1 : 0;
+  });
+  std::vector<std::uint32_t> met_of((senders.size() - 1) / Sending::GROUP + 1), sent_of(met_of.size());
+  for (size_t i = 0; i < first; ++i) {
+    met_of[carried[i].sender / Sending::GROUP] += met[i];
+    ++sent_of[carried[i].sender / Sending::GROUP];
+  }
+  sending.learn(met_of, sent_of);
+  const auto take_part = [&](size_t j, Carried& c) {
+    c.flux = senders[c.sender].flux * sending.part(c.sender, first, others);
+    take(j, c);
+  };
+  tbb::parallel_for(size_t(0), rays, [&](size_t j) {
+    if (j % Sending::EVERY == 0) {
+      if (met[j / Sending::EVERY] != 0) take_part(j, carried[j / Sending::EVERY]);
+      return;
+    }
+    // Where all have met something, as if there had been one way to choose.
+    const size_t i = j - j / Sending::EVERY - 1;
+    const double at = sending.all_meet() ? (double(j) + 0.5) / double(rays) : (double(i) + 0.5) / double(others);
+    Carried c;
+    if (trace(j, sending.by_meeting(at), c)) take_part(j, c);
   });
 }
 
