@@ -8,7 +8,8 @@ namespace volgi {
 struct PassageFace {
   glm::ivec3 cell;  // below the face, which is across `axis`
   int axis;
-  float factor;  // >= 0; above 1 where cells are narrower than the gap
+  float factor;     // >= 0; above 1 where cells are narrower than the gap
+  int passage = 0;  // that it is of, from 0 on
 };
 
 }  // namespace volgi

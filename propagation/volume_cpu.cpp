@@ -279,8 +279,9 @@ void VolumeCpu::voxelize() {
   }
 }
 
-void VolumeCpu::set_passages(std::span<const PassageFace> faces) {
-  if (bounces_) bounces_->transport().set_passages(faces);
+void VolumeCpu::set_passages(std::vector<PassageFace> faces) {
+  passages_ = std::move(faces);
+  if (bounces_) bounces_->transport().set_passages(passages_);
   passages_are_old_ = false;
 }
 

@@ -47,7 +47,8 @@ class VolumeCpu {
   void light_in(SideFlux flux);
   /// Before propagate(): gaps between rooms, as wide as they are (light_in/narrow_passages.h). Holds until cells
   /// change.
-  void set_passages(std::span<const PassageFace> faces);
+  void set_passages(std::vector<PassageFace> faces);
+  std::span<const PassageFace> passages() const { return passages_; }
   /// Whether cells have changed since set_passages().
   bool passages_are_old() const { return passages_are_old_; }
   void propagate();
@@ -102,6 +103,7 @@ class VolumeCpu {
   BounceReport report_;
   size_t pocket_cells_ = 0;
   BounceCheckpoint* checkpoint_ = nullptr;
+  std::vector<PassageFace> passages_;
   bool passages_are_old_ = true;
   bool moved_ = false, shifted_ = false;  // since the last voxelization
 };

@@ -21,6 +21,11 @@ int affordable_rays(size_t sides, int wanted) {
 
 int rays_of_all(size_t sides) { return std::max(affordable_rays(sides, FinalGatherCpu::RAYS_OF_ALL), 1); }
 
+/// All together at most two for each side there is.
+int rays_beside(size_t sides, size_t beside) {
+  return std::min(FinalGatherCpu::RAYS_BESIDE, int(2 * sides / std::max(beside, size_t(1))));
+}
+
 /// Cells that are at most `reach` from one of these along an axis.
 std::vector<bool> spread(const Grid& grid, const std::vector<bool>& cells, int axis, int reach) {
   std::vector<bool> out(cells.size(), false);
@@ -36,17 +41,19 @@ std::vector<bool> spread(const Grid& grid, const std::vector<bool>& cells, int a
 
 }  // namespace
 
-void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, const std::vector<bool>& seen,
-                            int rays) {
+void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, std::span<const PassageFace> passages,
+                            const std::vector<bool>& seen, int rays) {
   const size_t count = voxels.side_count();
   const bool same =
       count == sides_.size() && std::memcmp(sides_.data(), voxels.sides().data(), count * sizeof(shared::Side)) == 0;
   if (same && seen == seen_ && rays == rays_of_seen_) return;
+  const PassageAim aim(passages);
   if (!same) {
     sides_.assign(voxels.sides().begin(), voxels.sides().begin() + std::ptrdiff_t(count));
     std::vector<std::uint32_t> every(count);
     std::iota(every.begin(), every.end(), 0u);
-    all_.trace(voxels, embree, every, 0, rays_of_all(count));
+    all_.trace(voxels, embree, aim, every, 0, rays_of_all(count));
+    follow_passages(voxels, embree, aim);
   }
   seen_ = seen;
   rays_of_seen_ = rays;
@@ -55,7 +62,28 @@ void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, 
     if (seen[size_t(sides_[s].cell)]) seen_sides_.push_back(std::uint32_t(s));
   }
   const int more = affordable_rays(seen_sides_.size(), rays) - all_.rays();
-  more_.trace(voxels, embree, seen_sides_, all_.rays(), std::max(more, 0));
+  more_.trace(voxels, embree, aim, seen_sides_, all_.rays(), std::max(more, 0));
+}
+
+void FinalGatherCpu::follow_passages(const VoxelGrid& voxels, const EmbreeScene& embree, const PassageAim& passages) {
+  beside_.clear();
+  row_beside_.assign(passages.empty() ? 0 : sides_.size(), -1);
+  for (size_t s = 0; s < row_beside_.size(); ++s) {
+    const glm::vec3 cell(shared::cell_coord(voxels.grid(), sides_[s].cell));
+    if (!passages.is_beside(cell + 0.5f)) continue;
+    row_beside_[s] = std::int32_t(beside_.size());
+    beside_.push_back(std::uint32_t(s));
+  }
+  constexpr int OTHERS = 1 << 16;  // than those of all sides and of seen ones
+  of_beside_.trace(voxels, embree, passages, beside_, OTHERS, rays_beside(sides_.size(), beside_.size()));
+}
+
+/// What rays of all sides, and those beside passages, know of one.
+Gathered FinalGatherCpu::gathered(size_t side, std::span<const glm::vec3> radiosity) const {
+  Gathered g;
+  g.add(all_.row(side), radiosity);
+  if (!row_beside_.empty() && row_beside_[side] >= 0) g.add(of_beside_.row(size_t(row_beside_[side])), radiosity);
+  return g;
 }
 
 /// Of all sides, until their light is that of each other's.
@@ -72,8 +100,7 @@ void FinalGatherCpu::iterate(const VoxelGrid& voxels, std::span<const glm::vec3>
   radiate();
   for (report_.iterations = 1;; ++report_.iterations) {
     for_each_side(count, [&](size_t s) {
-      Gathered g;
-      g.add(all_.row(s), radiosity_);
+      const Gathered g = gathered(s, radiosity_);
       const glm::vec3 fresh = g.rays > 0 ? g.mean() : received_[s];
       change[s] = fresh - received_[s];
       received_[s] = fresh;
@@ -104,36 +131,38 @@ std::vector<glm::vec3> FinalGatherCpu::radiosity_of(const VoxelGrid& voxels, con
   });
   for_each_side(own.size(), [&](size_t s) {
     Gathered arrival;
-    if (!emitted.empty()) arrival.add(all_.row(s), emitted);
+    if (!emitted.empty()) arrival = gathered(s, emitted);
     own[s] = sent.reflected[s] / std::max(sides[s].area_m2, least_m2) + sides[s].albedo * arrival.mean();
   });
   return own;
 }
 
-const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const EmbreeScene& embree, const Sent& sent,
+const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const EmbreeScene& embree,
+                                                  std::span<const PassageFace> passages, const Sent& sent,
                                                   std::span<const glm::vec4> volume, const std::vector<bool>& seen,
                                                   int rays) {
-  follow(voxels, embree, seen, rays);
+  follow(voxels, embree, passages, seen, rays);
   const size_t count = voxels.side_count();
   radiosity_.resize(count);
   received_.resize(count);
   const std::vector<glm::vec3> own = radiosity_of(voxels, sent);
   for_each_side(count, [&](size_t s) { received_[s] = glm::vec3(volume[s]); });
   iterate(voxels, own);
-  std::vector<Gathered> gathered(count);
+  std::vector<Gathered> seen_light(count);
   for_each_side(seen_sides_.size(), [&](size_t i) {
-    Gathered& g = gathered[seen_sides_[i]];
-    g.add(all_.row(seen_sides_[i]), radiosity_);
+    Gathered& g = seen_light[seen_sides_[i]];
+    g = gathered(seen_sides_[i], radiosity_);
     if (more_.rays() > 0) g.add(more_.row(i), radiosity_);
   });
-  irradiance_ = steadied(voxels, gathered, volume);
+  irradiance_ = steadied(voxels, seen_light, volume);
   report_.seen_sides = seen_sides_.size();
-  report_.rays = all_.rows() * size_t(all_.rays()) + more_.rows() * size_t(more_.rays());
+  report_.rays = all_.traced() + more_.traced() + of_beside_.traced();
   return irradiance_;
 }
 
 size_t FinalGatherCpu::bytes() const {
-  return all_.bytes() + more_.bytes() + sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 +
+  return all_.bytes() + more_.bytes() + of_beside_.bytes() + beside_.capacity() * sizeof(std::uint32_t) +
+         row_beside_.capacity() * sizeof(std::int32_t) + sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 +
          seen_sides_.capacity() * sizeof(std::uint32_t) +
          (radiosity_.capacity() + received_.capacity()) * sizeof(glm::vec3) +
          irradiance_.capacity() * sizeof(glm::vec4);
@@ -142,8 +171,10 @@ size_t FinalGatherCpu::bytes() const {
 size_t FinalGatherCpu::bytes_for(const Grid& grid, size_t sides, int rays) {
   if (cell_count(grid) > MOST_CELLS) return 0;
   const int all = rays_of_all(sides), more = std::max(affordable_rays(sides, rays) - all, 0);
-  const size_t a_side = sizeof(shared::Side) + sizeof(std::uint32_t) + 2 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
-  return sides * a_side + cell_count(grid) / 8 + sides * size_t(all + more) * sizeof(GatherRows::Met);
+  const size_t a_side = sizeof(shared::Side) + 2 * sizeof(std::uint32_t) + sizeof(std::int32_t) +
+                        2 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
+  return sides * a_side + cell_count(grid) / 8 + GatherRows::most_bytes(sides, all) +
+         GatherRows::most_bytes(sides, more) + GatherRows::most_bytes(sides, 2);
 }
 
 std::vector<bool> cells_seen(const Grid& grid, std::span<const glm::vec4> positions) {

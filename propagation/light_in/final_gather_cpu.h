@@ -19,12 +19,14 @@ namespace volgi {
 ///
 /// Rays are traced once for a scene that stands still, whatever the light; of other pixels, theirs anew. Cost: some
 /// 0.5 us a ray, at most MOST_RAYS of either kind, and an iteration 3 ns for each ray of all sides. Memory: 8 bytes a
-/// ray, some 130 bytes a side.
+/// ray, some 130 bytes a side. What passes narrow passages has rays of its own (light_in/passage_aim.h), a quarter
+/// more.
 class FinalGatherCpu {
  public:
   static constexpr size_t MOST_CELLS = size_t(1) << 23;
   static constexpr size_t MOST_RAYS = size_t(1) << 21;
   static constexpr int RAYS_OF_ALL = 16;   // of each side, at most
+  static constexpr int RAYS_BESIDE = 64;   // more of those in passages: few, and all light passes by them
   static constexpr int RAYS_OF_SEEN = 64;  // of each that pixels read, by default
 
   struct Report {
@@ -37,11 +39,12 @@ class FinalGatherCpu {
     std::vector<glm::vec3> reflected;  // of light that no side had before
     std::vector<glm::vec3> emitted;    // whose arrival is not wanted, only what sides return of it; empty: none
   };
-  /// @param volume  irradiance of sides but for the arrival of what is emitted.
+  /// @param passages  of `voxels`, numbered. @param volume  irradiance of sides but for the arrival of what is emitted.
   /// @param seen    by cell: whether its sides are wanted (cells_seen()).
   /// @param rays    of each of these.
   /// @return in place of `volume`: of the others as it is there.
-  const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree, const Sent& sent,
+  const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree,
+                                    std::span<const PassageFace> passages, const Sent& sent,
                                     std::span<const glm::vec4> volume, const std::vector<bool>& seen, int rays);
   const Report& report() const { return report_; }
   size_t bytes() const;
@@ -49,15 +52,20 @@ class FinalGatherCpu {
   static size_t bytes_for(const Grid& grid, size_t sides, int rays);
 
  private:
-  void follow(const VoxelGrid& voxels, const EmbreeScene& embree, const std::vector<bool>& seen, int rays);
+  void follow(const VoxelGrid& voxels, const EmbreeScene& embree, std::span<const PassageFace> passages,
+              const std::vector<bool>& seen, int rays);
+  void follow_passages(const VoxelGrid& voxels, const EmbreeScene& embree, const PassageAim& passages);
   std::vector<glm::vec3> radiosity_of(const VoxelGrid& voxels, const Sent& sent) const;
+  Gathered gathered(size_t side, std::span<const glm::vec3> radiosity) const;
   void iterate(const VoxelGrid& voxels, std::span<const glm::vec3> own);
 
   std::vector<shared::Side> sides_;  // that rows are of
   std::vector<bool> seen_;
   int rays_of_seen_ = 0;
   std::vector<std::uint32_t> seen_sides_;
-  GatherRows all_, more_;  // more_: of seen_sides_
+  std::vector<std::uint32_t> beside_;     // sides in passages and next to them, ascending
+  std::vector<std::int32_t> row_beside_;  // by side: its place there, or -1
+  GatherRows all_, more_, of_beside_;     // more_: of seen_sides_
   std::vector<glm::vec3> radiosity_, received_;
   std::vector<glm::vec4> irradiance_;
   Report report_;

@@ -314,7 +314,7 @@ std::vector<PassageFace> narrow_passages(const VoxelGrid& voxels, const EmbreeSc
   for (size_t i = 0; i < passages.size(); ++i) {
     const float factor = std::min(Paths(voxels, embree, rooms, passages[i]).factor(), largest[i]);
     for (const auto& [cell, axis] : passages[i].faces)
-      all.push_back({shared::cell_coord(voxels.grid(), cell), axis, factor});
+      all.push_back({shared::cell_coord(voxels.grid(), cell), axis, factor, int(i)});
   }
   std::sort(all.begin(), all.end(), [&](const PassageFace& a, const PassageFace& b) {
     return std::pair(shared::cell_index(voxels.grid(), a.cell), a.axis) <

@@ -37,7 +37,7 @@ const SideIrradiance* GatherSeenSides::run(const VolumeCpu& volume, const Embree
   if (!ran_) return nullptr;
   const auto scope = timer.scope(name);
   irradiance_.direct = volume.irradiance().direct;
-  irradiance_.indirect = gather_.run(voxels, embree, sent_by(volume), volume.irradiance().indirect,
+  irradiance_.indirect = gather_.run(voxels, embree, volume.passages(), sent_by(volume), volume.irradiance().indirect,
                                      cells_seen(voxels.grid(), positions_of(gbuffer)), volume.options().gather_rays);
   return &irradiance_;
 }

@@ -9,6 +9,7 @@
 
 #include "propagation/light_in/direct_light_cpu.h"
 #include "propagation/light_in/gather_steadied.h"
+#include "propagation/light_in/narrow_passages.h"
 #include "tests/propagation/rooms_with_slit.h"
 #include "tests/support/invariance.h"
 #include "tests/support/paths.h"
@@ -35,7 +36,7 @@ struct Gathering {
   }
   const std::vector<glm::vec4>& gather(int rays = 64) {
     const std::vector<bool> all(cell_count(volume.grid()), true);
-    return gather_.run(volume.voxels(), embree, sent, volume.irradiance().indirect, all, rays);
+    return gather_.run(volume.voxels(), embree, volume.passages(), sent, volume.irradiance().indirect, all, rays);
   }
   /// Mean over the sides that look into rooms, and how far they are from it, both by area.
   struct Spread {
@@ -89,6 +90,8 @@ TEST(FinalGather, TheFarRoomIsAsBrightInEveryGrid) {
   const Scene scene = rooms_with_slit(0.15f);
   const auto far_room = [&](int cells, bool by_rays) {
     Gathering g(scene, cells);
+    g.volume.set_passages(narrow_passages(g.volume.voxels(), g.embree));
+    EXPECT_FALSE(g.volume.passages().empty());
     const auto in_far_room = [&](const shared::Side& side) {
       const glm::ivec3 cell = shared::cell_coord(g.volume.grid(), side.cell);
       return g.volume.grid().origin.x + (float(cell.x) + 0.5f) * g.volume.grid().cell_size_m > 0.5f;
@@ -105,7 +108,7 @@ TEST(FinalGather, TheFarRoomIsAsBrightInEveryGrid) {
   }
   RecordProperty("ratio", std::to_string(most[0] / least[0]) + " -> " + std::to_string(most[1] / least[1]));
   EXPECT_GT(most[0] / least[0], 1.3);
-  EXPECT_LT(most[1] / least[1], 1.15);  // 1.13: 16 rays a side, of which one in a hundred finds the slit
+  EXPECT_LT(most[1] / least[1], 1.06);  // 1.04; 1.13 where one in a hundred of 16 rays finds the slit
 }
 
 TEST(FinalGather, TracesOnceForWhatStandsStill) {
@@ -116,7 +119,7 @@ TEST(FinalGather, TracesOnceForWhatStandsStill) {
   std::vector<glm::vec4> doubled = g.volume.irradiance().indirect;
   for (glm::vec4& v : doubled) v = glm::vec4(2.0f * glm::vec3(v), v.w);
   const std::vector<bool> all(cell_count(g.volume.grid()), true);
-  const auto& twice = g.gather_.run(g.volume.voxels(), g.embree, g.sent, doubled, all, 64);
+  const auto& twice = g.gather_.run(g.volume.voxels(), g.embree, g.volume.passages(), g.sent, doubled, all, 64);
   EXPECT_EQ(g.gather_.report().rays, rays);
   for (size_t s = 0; s < first.size(); ++s) EXPECT_NEAR(twice[s].x, 2.0f * first[s].x, 1e-4f * first[s].x + 1e-6f);
   Gathering again(g.scene, 16);
@@ -137,17 +140,23 @@ TEST(FinalGather, DoesNotDependOnThreads) {
 TEST(FinalGather, LeavesWhatIsNotSeen) {
   Gathering g(load_scene(source_dir() / "data/cornell.glb"), 16);
   const std::vector<bool> none(cell_count(g.volume.grid()), false);
-  EXPECT_EQ(g.gather_.run(g.volume.voxels(), g.embree, g.sent, g.volume.irradiance().indirect, none, 64),
-            g.volume.irradiance().indirect);
+  EXPECT_EQ(
+      g.gather_.run(g.volume.voxels(), g.embree, g.volume.passages(), g.sent, g.volume.irradiance().indirect, none, 64),
+      g.volume.irradiance().indirect);
   EXPECT_EQ(g.gather_.report().seen_sides, 0u);
 }
 
 TEST(FinalGather, SaysWhatMemoryItTakes) {
-  Gathering g(load_scene(source_dir() / "data/cornell.glb"), 24);
-  g.gather();
-  const auto said = double(FinalGatherCpu::bytes_for(g.volume.grid(), g.volume.voxels().side_count(), 64));
-  EXPECT_LE(double(g.gather_.bytes()), said);
-  EXPECT_GT(double(g.gather_.bytes()), 0.8 * said);
+  for (const bool with_passage : {false, true}) {
+    Gathering g(with_passage ? rooms_with_slit(0.15f) : load_scene(source_dir() / "data/cornell.glb"),
+                with_passage ? 60 : 24);
+    g.volume.set_passages(narrow_passages(g.volume.voxels(), g.embree));
+    EXPECT_EQ(g.volume.passages().empty(), !with_passage);
+    g.gather();
+    const auto said = double(FinalGatherCpu::bytes_for(g.volume.grid(), g.volume.voxels().side_count(), 64));
+    EXPECT_LE(double(g.gather_.bytes()), said);
+    EXPECT_GT(double(g.gather_.bytes()), (with_passage ? 0.8 : 0.7) * said);  // it has room for rays through passages
+  }
 }
 
 TEST(FinalGather, SeenCellsReachPixelsAndTheirMeans) {
