@@ -56,6 +56,7 @@ BounceReport BouncesCpu::run(const VolumeSides& sides, const SideFlux& flux, boo
   }
   const int limit = rules.bounces ? *rules.bounces + (has_emission ? 1 : 0) : BounceRules::kMaxOrders;
   resumed_.reset();
+  cut_ = false;
   assert(checkpoint_ == nullptr || sides.levels() == 1);
   const bool resumed = checkpoint_ != nullptr && !rules.continues() && go_on(run, report);
   if (has_emission && limit > 0 && !resumed) arrival_of_emission(run, report);
@@ -175,8 +176,15 @@ void BouncesCpu::orders(const Run& run, int limit, BounceReport& report) {
       sent_[i] = glm::vec4(glm::vec3(response_[i]) * glm::vec3(received_[i]), 0.0f);
     });
     if (together) return;
+    cut_ = rules.bounces && report.orders == limit;
     keep(run, report, sent_, sent_);
   }
+}
+
+std::vector<glm::vec4> BouncesCpu::received_but_last() const {
+  Powers earlier = received_indirect_;
+  if (cut_) for_each_side(earlier.size(), [&](size_t i) { earlier[i] -= received_[i]; });
+  return earlier;
 }
 
 void BouncesCpu::send_all() {

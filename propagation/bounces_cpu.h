@@ -40,6 +40,8 @@ class BouncesCpu {
 
   const std::vector<glm::vec4>& received_direct() const { return received_direct_; }  // emission's first arrival [W]
   const std::vector<glm::vec4>& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
+  /// The same without the last order that BounceRules::bounces allows; all of it where orders ended before.
+  std::vector<glm::vec4> received_but_last() const;
   /// Power per side sent in all orders [W]: what the radiance in free space follows from.
   std::vector<glm::vec4> sent(const VolumeSides& sides, const SideFlux& flux) const;
   TransportCpu& transport() const { return *transport_; }
@@ -101,6 +103,7 @@ class BouncesCpu {
   // Amortised: an order may go on in the next run.
   bool in_flight_ = false, arrival_in_flight_ = false;
   int orders_begun_ = 0;
+  bool cut_ = false;  // orders came to their limit: received_ is the last one's
 };
 
 /// Irradiance per side [W m^-2] for pixels, twin of SideIrradianceGl: smoothed over 3^3 cells, then clamped at zero.
@@ -110,6 +113,8 @@ struct SideIrradiance {
 /// @param halo  of a rank's voxels: what others have at the sides beside its own; null: there are no others.
 SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
                                const SideHalo* halo = nullptr);
+/// The same with received_but_last().
+SideIrradiance side_irradiance_but_last(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces);
 /// Of one level of a volume, of which `flux` and `bounces` are; of its sides alone.
 SideIrradiance side_irradiance_of_level(const VolumeSides& sides, size_t level, const SideFlux& flux,
                                         const BouncesCpu& bounces, const SideHalo* halo = nullptr);

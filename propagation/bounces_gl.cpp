@@ -50,6 +50,8 @@ void BouncesGl::make_room(const Run& run) {
       *b = gl::Buffer(sizeof(glm::vec4) * size_t(capacity_));
     }
   }
+  if (run.rules.bounces) gl::reserve(received_but_last_, received_indirect_.bytes());
+  cut_ = false;
   if (!continues) received_indirect_.clear();
   // Amortised runs keep the arrival of emission, and what is in flight.
   if (!continues || !amortised || !run.has_emission) received_direct_.clear();
@@ -149,6 +151,10 @@ void BouncesGl::orders(const Run& run, BounceReport& report) {
     report.left += carried.left;
     if (order == 0) announce_long_run(seconds_since(start), rules);
     const bool together = transport_->iterative() && order_rules.together();
+    cut_ = rules.bounces && order + 1 == orders && !arrival_of_emission;
+    if (cut_)
+      glCopyNamedBufferSubData(received_indirect_.id(), received_but_last_.id(), 0, 0,
+                               GLsizeiptr(received_indirect_.bytes()));
     next_order(run.voxels, arrival_of_emission ? received_direct_ : received_indirect_,
                arrival_of_emission ? &run.flux.punctual() : nullptr, together);
     if (together) break;
@@ -303,12 +309,14 @@ gl::Buffer BouncesGl::sent(const VoxelGridGl& voxels, const SideFluxGl& flux) co
 
 size_t BouncesGl::bytes_for(std::uint32_t side_capacity, const BounceRules& rules, bool linear) {
   const size_t solver = needs_solver(rules, linear) ? BounceSolverGl::bytes_for(side_capacity) : 0;
-  return 4 * sizeof(glm::vec4) * size_t(side_capacity) + sizeof(glm::vec4) + kPartialsBytes + solver;
+  const size_t powers = rules.bounces ? 5 : 4;
+  return powers * sizeof(glm::vec4) * size_t(side_capacity) + sizeof(glm::vec4) + kPartialsBytes + solver;
 }
 
 size_t BouncesGl::bytes() const {
   return transport_->bytes() + received_.bytes() + sent_.bytes() + received_direct_.bytes() +
-         received_indirect_.bytes() + sum_.bytes() + partials_.bytes() + (solver_ ? solver_->bytes() : 0);
+         received_indirect_.bytes() + received_but_last_.bytes() + sum_.bytes() + partials_.bytes() +
+         (solver_ ? solver_->bytes() : 0);
 }
 
 }  // namespace volgi

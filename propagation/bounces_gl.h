@@ -31,6 +31,9 @@ class BouncesGl {
 
   const gl::Buffer& received_direct() const { return received_direct_; }  // emission's first arrival [W], vec4 a side
   const gl::Buffer& received_indirect() const { return received_indirect_; }  // all later arrivals [W]
+  /// received_indirect() without the last order that BounceRules::bounces allows; all of it where orders ended before,
+  /// and where their number is not given.
+  const gl::Buffer& received_but_last() const { return cut_ ? received_but_last_ : received_indirect_; }
   /// Power per side sent in all orders [W], vec4 a side: what TransportGl::radiance takes.
   gl::Buffer sent(const VoxelGridGl& voxels, const SideFluxGl& flux) const;
   TransportGl& transport() const { return *transport_; }
@@ -58,6 +61,8 @@ class BouncesGl {
   std::unique_ptr<TransportGl> transport_;
   gl::Program next_order_, sum_sent_, sum_partials_;
   gl::Buffer received_, sent_, received_direct_, received_indirect_, sum_, partials_;
+  gl::Buffer received_but_last_;  // with a number of bounces
+  bool cut_ = false;              // orders came to their limit
   gl::Readback readback_;
   std::unique_ptr<BounceSolverGl> solver_;  // where all bounces are asked for at once
   std::uint32_t capacity_ = 0;

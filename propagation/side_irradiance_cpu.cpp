@@ -18,17 +18,15 @@ struct Mean {
   glm::vec4 clamped() const { return glm::vec4(glm::max(sum, 0.0f) / weights_m2, 1.0f); }
 };
 
+/// What sides have received [W].
+struct Received {
+  const std::vector<glm::vec4>&direct, &indirect;
+};
+
 float weight_of(const shared::Side& s) { return shared::side_weight(s.normal, shared::face_axis(s.face), s.area_m2); }
 
-}  // namespace
-
-SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
+SideIrradiance irradiance_from(const Received& received, const VolumeSides& all, size_t level, const SideFlux& flux,
                                const SideHalo* halo) {
-  return side_irradiance_of_level(voxels, 0, flux, bounces, halo);
-}
-
-SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, const SideFlux& flux,
-                                        const BouncesCpu& bounces, const SideHalo* halo) {
   const VoxelGrid& voxels = all.level(level);
   const size_t number = all.first(level);
   const std::vector<shared::Side>& sides = voxels.sides();
@@ -37,12 +35,12 @@ SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, co
   for_each_side(count, [&](size_t i) {
     const shared::Side& s = sides[i];
     const int axis = shared::face_axis(s.face);
-    const auto weighted = [&](const glm::vec4& received, const glm::vec4& own) {
-      return weight_of(s) * shared::side_irradiance(glm::vec3(received), glm::vec3(own), s.albedo, s.normal, axis,
-                                                    s.area_m2, s.face_m2);
+    const auto weighted = [&](const glm::vec4& power, const glm::vec4& own) {
+      return weight_of(s) *
+             shared::side_irradiance(glm::vec3(power), glm::vec3(own), s.albedo, s.normal, axis, s.area_m2, s.face_m2);
     };
-    direct[i] = weighted(bounces.received_direct()[number + i], flux.emitted[number + i]);
-    indirect[i] = weighted(bounces.received_indirect()[number + i], flux.punctual[number + i]);
+    direct[i] = weighted(received.direct[number + i], flux.emitted[number + i]);
+    indirect[i] = weighted(received.indirect[number + i], flux.punctual[number + i]);
   });
   if (halo != nullptr) {
     halo->fetch(direct);
@@ -59,6 +57,23 @@ SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, co
     mean.indirect[i] = rest.clamped();
   });
   return mean;
+}
+
+}  // namespace
+
+SideIrradiance side_irradiance(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces,
+                               const SideHalo* halo) {
+  return side_irradiance_of_level(voxels, 0, flux, bounces, halo);
+}
+
+SideIrradiance side_irradiance_but_last(const VoxelGrid& voxels, const SideFlux& flux, const BouncesCpu& bounces) {
+  const std::vector<glm::vec4> indirect = bounces.received_but_last();
+  return irradiance_from({bounces.received_direct(), indirect}, voxels, 0, flux, nullptr);
+}
+
+SideIrradiance side_irradiance_of_level(const VolumeSides& all, size_t level, const SideFlux& flux,
+                                        const BouncesCpu& bounces, const SideHalo* halo) {
+  return irradiance_from({bounces.received_direct(), bounces.received_indirect()}, all, level, flux, halo);
 }
 
 }  // namespace volgi

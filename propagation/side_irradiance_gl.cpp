@@ -9,8 +9,8 @@ SideIrradianceGl::SideIrradianceGl()
     : side_irradiance_(gl::Program::compute("propagation/side_irradiance.comp.glsl")),
       smooth_(gl::Program::compute("propagation/smooth_sides.comp.glsl")) {}
 
-void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces,
-                           gl::PassTimer& timer) {
+void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, const gl::Buffer& direct,
+                           const gl::Buffer& indirect, gl::PassTimer& timer) {
   auto scope = timer.scope("propagation/side_irradiance");
   if (capacity_ != voxels.side_capacity) {
     capacity_ = voxels.side_capacity;
@@ -19,8 +19,8 @@ void SideIrradianceGl::run(const VoxelGridGl& voxels, const SideFluxGl& flux, co
     }
   }
   voxels.bind();
-  bounces.received_direct().bind_storage(TOTAL_DIRECT_SLOT);
-  bounces.received_indirect().bind_storage(TOTAL_INDIRECT_SLOT);
+  direct.bind_storage(TOTAL_DIRECT_SLOT);
+  indirect.bind_storage(TOTAL_INDIRECT_SLOT);
   flux.emitted().bind_storage(EMITTED_FLUX_SLOT);
   flux.punctual().bind_storage(PUNCTUAL_FLUX_SLOT);
   raw_direct_.bind_storage(WEIGHTED_DIRECT_SLOT);

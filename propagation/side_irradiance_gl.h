@@ -11,7 +11,12 @@ namespace volgi {
 class SideIrradianceGl {
  public:
   SideIrradianceGl();
-  void run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces, gl::PassTimer& timer);
+  void run(const VoxelGridGl& voxels, const SideFluxGl& flux, const BouncesGl& bounces, gl::PassTimer& timer) {
+    run(voxels, flux, bounces.received_direct(), bounces.received_indirect(), timer);
+  }
+  /// @param direct  received power [W], vec4 a side. @param indirect  alike.
+  void run(const VoxelGridGl& voxels, const SideFluxGl& flux, const gl::Buffer& direct, const gl::Buffer& indirect,
+           gl::PassTimer& timer);
 
   const gl::Buffer& direct() const { return direct_; }      // emission's first arrival; vec4 a side
   const gl::Buffer& indirect() const { return indirect_; }  // everything after

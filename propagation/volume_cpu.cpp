@@ -307,15 +307,24 @@ void VolumeCpu::irradiate() {
   const VolumeSides all = sides();
   irradiance_.resize(all.levels());
   for (size_t level = 0; level < all.levels(); ++level) {
-    SideIrradiance& own = irradiance_[level];
-    own = side_irradiance_of_level(all, level, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
-    if (options_.source == VolumeOptions::Source::lights || !flux_.emits) continue;
-    // The first arrival in the volume is emission's bounce 1.
-    for (size_t i = 0; i < own.indirect.size(); ++i) {
-      own.indirect[i] += glm::vec4(glm::vec3(own.direct[i]), 0.0f);
-      own.direct[i] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
-    }
+    irradiance_[level] = side_irradiance_of_level(all, level, flux_, *bounces_, halo_ ? &*halo_ : nullptr);
+    join_emission(irradiance_[level]);
   }
+}
+
+void VolumeCpu::join_emission(SideIrradiance& irradiance) const {
+  if (options_.source == VolumeOptions::Source::lights || !flux_.emits) return;
+  // The first arrival in the volume is emission's bounce 1.
+  for (size_t i = 0; i < irradiance.indirect.size(); ++i) {
+    irradiance.indirect[i] += glm::vec4(glm::vec3(irradiance.direct[i]), 0.0f);
+    irradiance.direct[i] = glm::vec4(0.0f, 0.0f, 0.0f, 1.0f);
+  }
+}
+
+SideIrradiance VolumeCpu::irradiance_but_last() const {
+  SideIrradiance irradiance = side_irradiance_but_last(voxels(), flux_, *bounces_);
+  join_emission(irradiance);
+  return irradiance;
 }
 
 const CellVolumes& VolumeCpu::cells() {

@@ -70,6 +70,9 @@ class VolumeCpu {
   /// and 1 ... n of emission, `direct` nothing.
   const SideIrradiance& irradiance(size_t level = 0) const { return irradiance_[level]; }
   const std::vector<SideIrradiance>& irradiance_of_levels() const { return irradiance_; }
+  /// irradiance() without the last order that VolumeOptions::bounces allows: what sides of a picture of so many bounces
+  /// reflect. Of one grid and one rank. Cost: irradiate() again.
+  SideIrradiance irradiance_but_last() const;
   const BounceReport& report() const { return report_; }
   size_t pocket_cells() const { return pocket_cells_; }  // bound_white_pockets()
   /// Radiance in free space, with the file's world transform. Costs a pass over the volume. Of one grid.
@@ -84,6 +87,7 @@ class VolumeCpu {
   std::vector<VoxelGrid> voxelized(bool white);
   std::unique_ptr<TransportCpu> transport() const;
   void voxelize_half(bool white);
+  void join_emission(SideIrradiance& irradiance) const;
 
   const Scene& scene_;
   VolumeOptions options_;

@@ -32,14 +32,15 @@ class BouncesGlTest : public GlTest {
 
   struct Result {
     BounceReport report;
-    Powers direct, indirect;
+    Powers direct, indirect, but_last;
   };
   Result run(std::unique_ptr<TransportGl> transport, const BounceRules& rules) {
     gl::PassTimer timer(context().software(), false);
     BouncesGl bounces(std::move(transport));
     const BounceReport report = bounces.run(voxels_->voxels(), *flux_, true, rules, timer);
     return {report, bounces.received_direct().download<glm::vec4>(sides_),
-            bounces.received_indirect().download<glm::vec4>(sides_)};
+            bounces.received_indirect().download<glm::vec4>(sides_),
+            bounces.received_but_last().download<glm::vec4>(sides_)};
   }
   std::unique_ptr<TransportGl> ordinates() { return std::make_unique<OrdinatesTransportGl>(unit_grid(10), 24); }
   std::unique_ptr<TransportGl> conservative() { return std::make_unique<ConservativeTransportGl>(unit_grid(10)); }
@@ -57,6 +58,9 @@ class BouncesGlTest : public GlTest {
       EXPECT_EQ(part.direct, whole.direct);
       for (size_t i = 0; i < sides_; ++i) {
         for (int band = 0; band < 3; ++band) EXPECT_GE(part.indirect[i][band], before[i][band] * 0.999999f);
+      }
+      if (n == 1 || n == 2) {
+        EXPECT_EQ(part.but_last, before);
       }
       before = part.indirect;
       if (n == 0) {

@@ -38,9 +38,9 @@ StageRole role(const FrameOptions& options) {
   const int n = options.of<Options>().interleave;
   if (n != 1 && n != 2 && n != 4 && n != 8)
     throw Error(ExitCode::usage, fmt::format("glossy.interleave: 1, 2, 4 or 8, not {}", n));
-  // What sides send knows no orders, so a number of bounces could not be held; and of nested grids no ray knows.
+  // Of nested grids no ray knows.
   const bool nested = options.of<VolumeOptions>().cascade.nested();
-  if (options.of<Options>().rays == 0 || options.bounces || nested) return {.active = false};
+  if (options.of<Options>().rays == 0 || nested) return {.active = false};
   return {.needs = {product<FrameVolume>()},
           .uses = {product<AreaLights>()},
           .adds = {{DIRECT, LightShare::mirror}, {INDIRECT, LightShare::mirror}}};
@@ -49,7 +49,8 @@ StageRole role(const FrameOptions& options) {
 class GlossyStage : public Stage {
  public:
   explicit GlossyStage(const StageContext& context)
-      : rays_(context.options.size, context.options.of<Options>(), has_phong_lobes(context.scene)) {}
+      : bounces_(context.options.bounces),
+        rays_(context.options.size, context.options.of<Options>(), has_phong_lobes(context.scene)) {}
 
   void run(FrameData& frame, gl::PassTimer& timer) override {
     const auto& volume = frame.get<FrameVolume>();
@@ -57,7 +58,7 @@ class GlossyStage : public Stage {
       throw Error(ExitCode::over_limit,
                   "lobes of what shines need the volume's sides on the GPU, and these are more than fit into its "
                   "buffers; use a smaller --grid, or --set glossy.rays=0");
-    sides_.run(volume, frame.shadow_maps, timer);
+    sides_.run(volume, frame.shadow_maps, bounces_, timer);
     const float rotation_rad = frame.scene.sky ? frame.scene.sky->rotation_rad() : 0.0f;
     rays_.run(frame.gbuffer, frame.camera,
               {volume.voxels(), sides_.radiosity(), frame.find<AreaLights>(), frame.sky, rotation_rad}, timer,
@@ -77,6 +78,7 @@ class GlossyStage : public Stage {
   void list_textures(std::vector<NamedTexture>& list) const override { rays_.list_textures(list); }
 
  private:
+  std::optional<int> bounces_;
   SideRadiosity sides_;
   LobeRays rays_;
 };

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "core/gl/objects.h"
 #include "core/gl/pass_timer.h"
 #include "core/gl/program.h"
@@ -15,7 +17,9 @@ class SideRadiosity {
   static constexpr const char* name = "screen/bounces/glossy/side_radiosity";
   SideRadiosity();
   /// @param volume  of the first bounce on the screen (VolumeOptions::Source::first_bounce), after its run.
-  void run(const FrameVolume& volume, const ReflectiveShadowMap& maps, gl::PassTimer& timer);
+  /// @param bounces  VolumeOptions::bounces of it: light that has been reflected as often, by the side the last time.
+  void run(const FrameVolume& volume, const ReflectiveShadowMap& maps, std::optional<int> bounces,
+           gl::PassTimer& timer);
 
   const gl::Buffer& radiosity() const { return radiosity_; }  // vec4 a side [W m^-2]
   size_t bytes() const { return radiosity_.bytes(); }

@@ -55,6 +55,9 @@ class FrameVolume {
   virtual bool sides_on_gpu() const { return true; }
   virtual const gl::Buffer* direct_irradiance() const { return nullptr; }
   virtual const gl::Buffer* indirect_irradiance() const { return nullptr; }
+  /// indirect_irradiance() without the last order that VolumeOptions::bounces allows: what sides of a picture of so
+  /// many bounces reflect. Made when it is asked for, once a run at most. Null where the scheme has no sides.
+  virtual const gl::Buffer* indirect_irradiance_but_last(gl::PassTimer& /*timer*/) const { return nullptr; }
   /// Of the last run: flux A B0 per side, vec4 [W], that sides reflect of the light that comes in, before any
   /// transport, and what they emit in order of its own; null: there is none. On the CPU it is uploaded when it is asked
   /// for.

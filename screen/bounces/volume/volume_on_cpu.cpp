@@ -209,6 +209,12 @@ class SidesOnCpu : public FrameVolume {
   }
   const gl::Buffer* direct_irradiance() const override { return sides_on_gpu() ? &direct_ : nullptr; }
   const gl::Buffer* indirect_irradiance() const override { return sides_on_gpu() ? &indirect_ : nullptr; }
+  const gl::Buffer* indirect_irradiance_but_last(gl::PassTimer& timer) const override {
+    if (!sides_on_gpu() || lead_) return nullptr;
+    const auto scope = timer.scope("propagation/side_irradiance_cpu");
+    upload_values(volume_.irradiance_but_last().indirect, but_last_);
+    return &but_last_;
+  }
   SentFlux light_in() const override {
     if (!sides_on_gpu() || lead_) return {};
     const SideFlux& flux = volume_.flux();
@@ -234,8 +240,8 @@ class SidesOnCpu : public FrameVolume {
       r.injected = glm::vec3(totals_.injected);
     }
     r.memory_bytes = volume_.bytes() + fetched_.bytes() + lights_.bytes() + voxels_.bytes() + direct_.bytes() +
-                     indirect_.bytes() + punctual_flux_.bytes() + emitted_flux_.bytes() + radiance_.bytes() +
-                     gather_.bytes() + seen_sides_.bytes();
+                     indirect_.bytes() + punctual_flux_.bytes() + emitted_flux_.bytes() + but_last_.bytes() +
+                     radiance_.bytes() + gather_.bytes() + seen_sides_.bytes();
     r.gather = seen_sides_.report();
     return r;
   }
@@ -310,7 +316,7 @@ class SidesOnCpu : public FrameVolume {
   gl::Buffer direct_, indirect_;
   VolumeGather gather_;
   // Of the last run, when it is asked for.
-  mutable gl::Buffer punctual_flux_, emitted_flux_;
+  mutable gl::Buffer punctual_flux_, emitted_flux_, but_last_;
   mutable RadianceVolumeGl radiance_;
   mutable bool radiance_is_new_ = false;
 };

@@ -145,6 +145,11 @@ class SidesOnGpu : public FrameVolume {
   const VoxelGridGl& voxels() const override { return lit_.voxels(); }
   const gl::Buffer* direct_irradiance() const override { return &irradiance_.direct(); }
   const gl::Buffer* indirect_irradiance() const override { return &irradiance_.indirect(); }
+  const gl::Buffer* indirect_irradiance_but_last(gl::PassTimer& timer) const override {
+    if (!but_last_) but_last_ = std::make_unique<SideIrradianceGl>();
+    but_last_->run(lit_.voxels(), lit_.flux(), bounces_.received_direct(), bounces_.received_but_last(), timer);
+    return &but_last_->indirect();
+  }
   SentFlux light_in() const override { return {&lit_.flux().punctual(), &lit_.flux().emitted()}; }
   const RadianceVolumeGl* radiance(gl::PassTimer& timer) const override {
     if (options_.passes_per_run) return nullptr;
@@ -156,7 +161,8 @@ class SidesOnGpu : public FrameVolume {
   }
   VolumeReport report() const override {
     VolumeReport r = lit_.report(bounce_report_);
-    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + radiance_.bytes() + gather_.bytes();
+    r.memory_bytes = lit_.bytes() + bounces_.bytes() + irradiance_.bytes() + radiance_.bytes() + gather_.bytes() +
+                     (but_last_ ? but_last_->bytes() : 0);
     return r;
   }
 
@@ -171,6 +177,7 @@ class SidesOnGpu : public FrameVolume {
   bool first_is_apart_ = true;
   BounceReport bounce_report_;
   // Of the last run, when it is asked for.
+  mutable std::unique_ptr<SideIrradianceGl> but_last_;
   mutable RadianceVolumeGl radiance_;
   mutable bool radiance_is_new_ = false;
 };

@@ -14,8 +14,8 @@ ScreenVoxels::ScreenVoxels(const ScreenVoxelOptions& options) : options_(options
   const int b = options.bits;
   if (b != 128 && b != 256 && b != 512 && b != 1024)
     throw Error(ExitCode::usage, "voxels.bits: 128, 256, 512 or 1024, not " + std::to_string(b));
-  for (gl::Texture* t : {&voxels_, &wide_along_rows_, &wide_})
-    *t = gl::Texture::make_2d_array(GL_R32UI, options.texels, options.texels, b / 32);
+  voxels_ = gl::Texture::make_2d_array(GL_R32UI, options.texels, options.texels, 2 * b / 32);
+  wide_along_rows_ = gl::Texture::make_2d_array(GL_R32UI, options.texels, options.texels, b / 32);
   framebuffer_ = gl::Framebuffer::without_attachments(glm::ivec2(options.texels));
   program_ = gl::Program::raster("screen/base/reflective_shadow_map.vert.glsl",
                                  "screen/visibility/screen_voxels/voxelize.frag.glsl");
@@ -52,14 +52,17 @@ void ScreenVoxels::run(const gl::SceneBuffers& buffers, const Scene& scene, cons
   program_.set("slice_from_world", slice_from_world_);
   buffers.draw(program_);
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-  widen(voxels_, {1, 0}, wide_along_rows_);
-  widen(wide_along_rows_, {0, 1}, wide_);
+  widen({1, 0}, voxels_, 0, wide_along_rows_, 0);
+  widen({0, 1}, wide_along_rows_, 0, voxels_, options_.bits / 32);
 }
 
-void ScreenVoxels::widen(const gl::Texture& from, glm::ivec2 axis, const gl::Texture& to) const {
+void ScreenVoxels::widen(glm::ivec2 axis, const gl::Texture& from, int from_layer, const gl::Texture& to,
+                         int to_layer) const {
   from.bind(VOXEL_BITS_UNIT);
   to.bind_image(VOXEL_BITS_IMAGE, GL_WRITE_ONLY);
   widen_.set("axis", axis);
+  widen_.set("from_layer", from_layer);
+  widen_.set("to_layer", to_layer);
   widen_.use();
   gl::dispatch({options_.texels, options_.texels, options_.bits / 32}, {SQUARE_GROUP, SQUARE_GROUP, 1});
   glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
@@ -67,7 +70,6 @@ void ScreenVoxels::widen(const gl::Texture& from, glm::ivec2 axis, const gl::Tex
 
 void ScreenVoxels::bind(const gl::Program& program) const {
   voxels_.bind(VOXEL_BITS_UNIT);
-  wide_.bind(VOXEL_WIDE_UNIT);
   program.set("voxel_clip_from_world", clip_from_world_);
   program.set("voxel_slice_from_world", slice_from_world_);
   program.set("voxel_steps", options_.steps);

@@ -37,14 +37,14 @@ class ScreenVoxels {
   void bind(const gl::Program& program) const;
 
   int steps() const { return options_.steps; }
-  const gl::Texture& bits() const { return voxels_; }  // R32UI, 32 slices a layer
+  const gl::Texture& bits() const { return voxels_; }  // R32UI, 32 slices a layer; then the wide ones
   size_t bytes() const { return 3 * size_t(options_.texels) * size_t(options_.texels) * size_t(options_.bits) / 8; }
 
  private:
-  void widen(const gl::Texture& from, glm::ivec2 axis, const gl::Texture& to) const;
+  void widen(glm::ivec2 axis, const gl::Texture& from, int from_layer, const gl::Texture& to, int to_layer) const;
 
   ScreenVoxelOptions options_;
-  gl::Texture voxels_, wide_along_rows_, wide_;
+  gl::Texture voxels_, wide_along_rows_;
   gl::Framebuffer framebuffer_;
   gl::Program program_, widen_;
   glm::mat4 clip_from_world_{1.0f};

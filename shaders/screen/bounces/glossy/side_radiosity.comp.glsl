@@ -19,12 +19,13 @@ layout(std430, binding = GLOSSY_RADIOSITY_SLOT) writeonly buffer Radiosity { vec
 uniform int has_punctual;  // 0: that buffer is another's
 uniform int has_emitted;
 uniform int has_direct;
+uniform int has_indirect;
 
 void main() {
   uint s = global_index();
   if (s >= side_count || s >= uint(sides.length())) return;
   Side side = sides[s];
-  vec3 flux = vec3(0.0), irradiance = indirect_irradiance[s].rgb;
+  vec3 flux = vec3(0.0), irradiance = has_indirect != 0 ? indirect_irradiance[s].rgb : vec3(0.0);
   if (has_punctual != 0) flux += punctual_flux[s].rgb;
   if (has_emitted != 0) flux += emitted_flux[s].rgb;
   if (has_direct != 0) irradiance += direct_irradiance[s].rgb;

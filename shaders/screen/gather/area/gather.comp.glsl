@@ -66,6 +66,19 @@ vec3 arriving(VirtualLight light, vec3 position, vec3 normal, vec3 geometric) {
   return light.flux * disk_to_point(height, along, -dot(light.normal, normal), dot(w, w), light.area_m2);
 }
 
+bool faces(VirtualLight light, vec3 position, vec3 normal, vec3 geometric) {
+  vec3 w = light.position - position;
+  return min(-dot(w, light.normal), min(dot(w, normal), dot(w, geometric))) > 0.0 && light.flux != vec3(0.0);
+}
+
+bool any_faces(int group, int member, vec3 position, vec3 normal, vec3 geometric) {
+  int begin = group * per_group + member / shares * shares;
+  bool any = false;
+  for (int k = begin; k < min(begin + shares, light_count); ++k)
+    any = any || faces(area_lights[k], position, normal, geometric);
+  return any;
+}
+
 // Of the lights for which one of them is asked: as many as pixels share out.
 vec3 arriving_of(int group, int member, vec3 position, vec3 normal, vec3 geometric) {
   int begin = group * per_group + member / shares * shares;
@@ -138,12 +151,10 @@ void main() {
     int end_group = min((light_count - member / shares * shares + per_group - 1) / per_group, groups.y);
     uvec2 facing = uvec2(0u);
     for (int group = groups.x; group < end_group; ++group) {
-      vec3 light = listed_here ? arriving_of(group, member, position, normal, geometric) : vec3(0.0);
-      if (light == vec3(0.0)) continue;
+      if (!listed_here || !any_faces(group, member, position, normal, geometric)) continue;
       uint bit = 1u << uint(group & 31);
       if (group < 32) facing.x |= bit;
       else facing.y |= bit;
-      if (((group < 32 ? seen.x : seen.y) & bit) != 0u) sum += light;
     }
     uvec2 open = facing & seen, unknown = facing & ~(seen | hidden);
     atomicAdd(all_ways, uint(bitCount(facing.x) + bitCount(facing.y)));
@@ -153,11 +164,11 @@ void main() {
 #else
     uvec2 found = answers_of_group(own, member, unknown);
 #endif
+    open |= found;
     for (int group = groups.x; group < end_group; ++group) {
-      if (((group < 32 ? found.x : found.y) >> uint(group & 31) & 1u) != 0u)
+      if (((group < 32 ? open.x : open.y) >> uint(group & 31) & 1u) != 0u)
         sum += arriving_of(group, member, position, normal, geometric);
     }
-    open |= found;
     faced |= facing;
     some_seen |= open;
     all_seen &= open | ~facing;

@@ -3,8 +3,8 @@
 #define VOLGI_SCREEN_VOXELS_GLSL
 #include "screen/visibility/screen_voxels/slots.shared.h"
 
+// 32 slices a layer; then as many layers of what VOXEL_RUN x VOXEL_RUN texels from each on hold.
 layout(binding = VOXEL_BITS_UNIT) uniform usampler2DArray voxel_bits;
-layout(binding = VOXEL_WIDE_UNIT) uniform usampler2DArray voxel_wide;  // of VOXEL_RUN x VOXEL_RUN texels from each on
 uniform mat4 voxel_clip_from_world;
 uniform vec4 voxel_slice_from_world;
 uniform int voxel_steps;
@@ -41,15 +41,15 @@ VoxelEnd voxel_end(vec3 world, vec3 normal) {
 
 ivec2 voxel_texel(vec4 place) { return ivec2(floor(place.xy / place.z)); }
 
-// Slices of a texel in [from, to].
-bool any_voxel(usampler2DArray voxels, ivec2 texel, float from, float to) {
-  int last_slice = 32 * textureSize(voxels, 0).z - 1;
+// Slices of a texel in [from, to]. @param first_layer  of the voxels, or of the wide ones.
+bool any_voxel(ivec2 texel, int first_layer, float from, float to) {
+  int last_slice = 16 * textureSize(voxel_bits, 0).z - 1;
   int first = clamp(int(floor(min(from, to))), 0, last_slice), last = clamp(int(floor(max(from, to))), 0, last_slice);
   bool hit = false;
   for (int word = first >> 5; word <= last >> 5; ++word) {
     int low = max(first - 32 * word, 0), high = min(last - 32 * word, 31);
     uint bits = (0xffffffffu >> uint(31 - high)) & (0xffffffffu << uint(low));
-    hit = hit || (texelFetch(voxels, ivec3(texel, word), 0).r & bits) != 0u;
+    hit = hit || (texelFetch(voxel_bits, ivec3(texel, first_layer + word), 0).r & bits) != 0u;
   }
   return hit;
 }
@@ -78,23 +78,26 @@ bool voxel_way(VoxelEnd from, VoxelEnd to, out VoxelWay way) {
 }
 
 // The first sample from `first` on that meets a voxel, or way.steps. Of VOXEL_RUN samples that lie in as many texels
-// one look says whether any can.
+// one look says whether any can. One loop for both kinds of look: lanes of a processor that go together would wait for
+// each other at the end of an inner one.
 int first_voxel(VoxelWay way, int first) {
-  ivec2 size = textureSize(voxel_bits, 0).xy;
+  ivec2 last_texel = textureSize(voxel_bits, 0).xy - 1;
+  int wide_layer = textureSize(voxel_bits, 0).z / 2;
   vec4 by = (way.to - way.from) / float(way.steps);
   float half_step = 0.5 * by.w;
-  for (int run = first; run < way.steps; run += VOXEL_RUN) {
-    int end = min(run + VOXEL_RUN, way.steps);
-    vec4 a = way.from + (float(run) + 0.5) * by, b = way.from + (float(end) - 0.5) * by;
+  int singly_to = first;  // samples before this one by one
+  for (int k = first; k < way.steps;) {
+    bool single = k < singly_to;
+    int end = single ? k + 1 : min(k + VOXEL_RUN, way.steps);
+    vec4 a = way.from + (float(k) + 0.5) * by, b = way.from + (float(end) - 0.5) * by;
     ivec2 texel_a = voxel_texel(a), texel_b = voxel_texel(b), low = min(texel_a, texel_b);
-    bool one_look = all(lessThan(abs(texel_a - texel_b), ivec2(VOXEL_RUN)));
-    if (one_look && !any_voxel(voxel_wide, clamp(low, ivec2(0), size - 1), a.w - half_step, b.w + half_step)) continue;
-    for (int k = run; k < end; ++k) {
-      vec4 place = way.from + (float(k) + 0.5) * by;
-      ivec2 texel = voxel_texel(place);
-      if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, size))) continue;
-      if (any_voxel(voxel_bits, texel, place.w - half_step, place.w + half_step)) return k;
-    }
+    bool looks = single ? texel_a == clamp(texel_a, ivec2(0), last_texel)
+                        : all(lessThan(abs(texel_a - texel_b), ivec2(VOXEL_RUN)));
+    bool hit = looks && any_voxel(clamp(low, ivec2(0), last_texel), single ? 0 : wide_layer, a.w - half_step,
+                                  b.w + half_step);
+    if (hit && single) return k;
+    if (single || (looks && !hit)) k = end;
+    else singly_to = end;
   }
   return way.steps;
 }

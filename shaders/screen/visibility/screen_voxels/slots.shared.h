@@ -3,7 +3,6 @@
 
 #define VOXEL_BITS_IMAGE 0
 #define VOXEL_BITS_UNIT 10
-#define VOXEL_WIDE_UNIT 11
 
 #define VOXEL_RUN 4  // texels on an edge of what wide ones hold, and samples that one look can stand for
 

@@ -18,7 +18,7 @@ void main() {
   float slice = dot(slice_from_world.xyz, position) + slice_from_world.w;
   float half_spread = 0.5 * (abs(dFdx(slice)) + abs(dFdy(slice)));
   if (!material_keeps(alpha, uvec3(gl_FragCoord.xy, object_id * 65599u + uint(gl_PrimitiveID)))) discard;
-  int last_slice = 32 * imageSize(voxels).z - 1;
+  int last_slice = 16 * imageSize(voxels).z - 1;
   int first = clamp(int(floor(slice - half_spread)), 0, last_slice);
   int last = clamp(int(floor(slice + half_spread)), 0, last_slice);
   for (int word = first >> 5; word <= last >> 5; ++word) {
