@@ -26,6 +26,11 @@ if(VOLGI_SANITIZE)
   target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=address,undefined;-fno-sanitize-recover=all;-fno-omit-frame-pointer>)
   target_link_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=address,undefined>)
 endif()
+if(VOLGI_TSAN)
+  # No fences in ThreadSanitizer (GCC's -Wtsan); what is ordered by them alone would be reported.
+  target_compile_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=thread;-fno-omit-frame-pointer;-Wno-tsan>)
+  target_link_options(volgi_options INTERFACE $<BUILD_INTERFACE:-fsanitize=thread>)
+endif()
 if(VOLGI_FUZZ)
   # The libraries of others are built without: no types of theirs for `vptr`, no signatures for `function`.
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=vptr,function)

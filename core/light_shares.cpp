@@ -12,6 +12,10 @@
 namespace volgi {
 namespace {
 
+/// A room whose lamp is weak beside another room's is all the same lit by it alone: the least share of a source is this
+/// part of an even one. The strong lose no more than an eighth of theirs.
+constexpr size_t EVEN_OVER_LEAST = 8;
+
 /// 1 - cos without the cancellation.
 double one_minus_cos(double angle_rad) {
   const double s = std::sin(0.5 * angle_rad);
@@ -125,14 +129,15 @@ std::vector<int> share_out(const std::vector<double>& power, int count) {
     for (size_t k = 0; k < size_t(count); ++k) share[sources[k]] = 1;
     return share;
   }
-  // Sources too weak for a whole one get one, the weakest first; the rest is for the others.
+  // Sources too weak for the least share get it, the weakest first; the rest is for the others.
+  const int least = std::max(1, count / int(EVEN_OVER_LEAST * sources.size()));
   double total = 0.0;
   for (const size_t i : sources) total += power[i];
-  while (sources.size() > 1 && power[sources.back()] * count < total) {
-    share[sources.back()] = 1;
+  while (sources.size() > 1 && power[sources.back()] * count < least * total) {
+    share[sources.back()] = least;
     total -= power[sources.back()];
     sources.pop_back();
-    --count;
+    count -= least;
   }
   std::vector<double> remainder(power.size(), 0.0);
   int left = count;

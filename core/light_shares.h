@@ -20,8 +20,8 @@ double rectangle_of_sun_m2(const shared::ReflectiveShadowLayer& layer, int resol
 /// Luminance of the power [W] that a light sends: into its cone, without range, or across the scene's bounds.
 double power_luminance(const Light& light, glm::vec3 bounds_min, glm::vec3 bounds_max);
 
-/// `count` shared in proportion to `power`: by largest remainder, earlier ones first among equals, and at least one to
-/// everything with power > 0; where that is too many, one to each of the strongest.
+/// `count` shared in proportion to `power`: by largest remainder, earlier ones first among equals. What has any gets
+/// one, and an eighth of an even share, at least; where one each is too many, the strongest get one.
 std::vector<int> share_out(const std::vector<double>& power, int count);
 
 /// Shares by the luminance of what sources send. That does not ask what light falls on, so shares stay while lights

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <new>
 
@@ -165,7 +166,9 @@ class Reader : public openvdb::io::Archive {
       skip_text();  // name
       const std::string type = read_text();
       const auto start = position();
-      check_value(type, get<std::uint32_t>());
+      const auto length = get<std::uint32_t>();
+      check_value(type, length);
+      if (type == DELAYED_LOAD && length > 0) check_leaf_sizes();
       stream_.seekg(start);
       skip_text();
     }
@@ -178,6 +181,20 @@ class Reader : public openvdb::io::Archive {
       return;
     if (length != openvdb::Metadata::createMetadata(type)->size())
       throw std::runtime_error("a value in it is not as long as its type");
+  }
+  /// A mark and then a size for each leaf, packed or as they are. OpenVDB makes room for as many as the value says.
+  void check_leaf_sizes() {
+    const auto leaves = get<std::uint32_t>();
+    if (leaves > size_) throw std::runtime_error("a list in it is of more leaves than the file has bytes");
+    skip_list(get<std::uint32_t>(), leaves);
+    constexpr std::uint32_t NO_SIZES = std::numeric_limits<std::uint32_t>::max();
+    if (const auto packed = get<std::uint32_t>(); packed != NO_SIZES) skip_list(packed, 8ull * leaves);
+  }
+  /// @param packed  bytes; 0: the list is not, and has so many as it has.
+  void skip_list(std::uint64_t packed, std::uint64_t plain) {
+    const std::uint64_t length = packed > 0 ? packed : plain;
+    if (length > size_ - std::uint64_t(position())) throw std::runtime_error("a list in it is longer than the file");
+    stream_.seekg(std::streamoff(length), std::ios::cur);
   }
   std::string read_text() {
     const auto start = position();

@@ -62,6 +62,7 @@ Window::Window(const WindowOptions& options) : toolkit_(std::make_unique<Toolkit
   window_ = glfwCreateWindow(options.size.x, options.size.y, options.title.c_str(), nullptr, nullptr);
   if (window_ == nullptr)
     throw Error(ExitCode::no_device, "no window with OpenGL 4.5: " + last_glfw_error() + "; " + NO_DISPLAY_HINT);
+  outlive_other_windows();
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);

@@ -3,7 +3,10 @@
 #ifdef VOLGI_HAS_X11
 
 #include <X11/Xlib.h>
+#include <X11/Xproto.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -20,6 +23,18 @@ int end(Display* /*display*/) {
   std::_Exit(int(ExitCode::no_device));
 }
 
+XErrorHandler other_errors = nullptr;
+
+/// What GLFW asks of windows of other programs: where something is dragged from, whose clipboard it is, who has the
+/// keyboard. They may have gone meanwhile, which is no reason to go too; Xlib's own handler ends the program.
+int forgive_others(Display* display, XErrorEvent* error) {
+  constexpr std::array OF_OTHERS{X_SendEvent,           X_GetProperty,  X_ChangeProperty,  X_DeleteProperty,
+                                 X_GetWindowAttributes, X_QueryPointer, X_TranslateCoords, X_SetInputFocus};
+  const auto* found = std::find(OF_OTHERS.begin(), OF_OTHERS.end(), int(error->request_code));
+  if (found != OF_OTHERS.end() && (error->error_code == BadWindow || error->error_code == BadMatch)) return 0;
+  return other_errors != nullptr ? other_errors(display, error) : 0;
+}
+
 }  // namespace
 
 bool shift_is_down_anywhere() {
@@ -34,6 +49,7 @@ bool shift_is_down_anywhere() {
 }
 
 void end_with_display() { XSetIOErrorHandler(end); }
+void outlive_other_windows() { other_errors = XSetErrorHandler(forgive_others); }
 
 }  // namespace volgi::demo
 
@@ -43,6 +59,7 @@ namespace volgi::demo {
 
 bool shift_is_down_anywhere() { return false; }
 void end_with_display() {}
+void outlive_other_windows() {}
 
 }  // namespace volgi::demo
 

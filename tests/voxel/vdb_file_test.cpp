@@ -276,6 +276,29 @@ TEST_F(VdbFileTest, ValuesAreAsLongAsTheirTypes) {
   }
 }
 
+TEST_F(VdbFileTest, ListsOfLeavesAreNoLongerThanTheFile) {
+  auto grid = openvdb::FloatGrid::create(0.0f);
+  grid->getAccessor().setValue({1, 2, 3}, 4.0f);
+  write_vdb(path(), {grid}, {});
+  const std::string good = foreign(read_bytes(path()));
+  const size_t count = good.find("__delayedload") + 13 + 4;  // behind the value's length
+  ASSERT_LT(count, good.size());
+  for (const size_t at : {count, count + 4}) {  // of leaves, and of bytes
+    std::string bytes = good;
+    bytes.replace(at, 4, std::string("\0\0\0\4", 4));  // 2^26
+    write_bytes(path(), bytes);
+    try {
+      read_vdb(path());
+      ADD_FAILURE() << "it is read";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.code(), ExitCode::bad_input);
+      EXPECT_NE(std::string(e.what()).find("a list in it is"), std::string::npos) << e.what();
+    }
+  }
+  write_bytes(path(), good);
+  EXPECT_EQ(read_vdb(path()).grids.size(), 1u);
+}
+
 TEST_F(VdbFileTest, SaysWhenItCannotWrite) {
   const fs::path targets[] = {folder_ / "none" / "grids.vdb", folder_};
   for (const fs::path& target : targets) {

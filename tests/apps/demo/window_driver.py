@@ -13,7 +13,7 @@ import time
 import unittest
 import zlib
 
-LONGEST_S = 60.0
+LONGEST_S = float(os.environ.get("VOLGI_LONGEST_WAIT_S", 60.0))  # more on a machine that does something else
 
 
 class Given:

@@ -4,8 +4,8 @@
     window_random.py VOLGI_DEMO X11_HAND SOURCE_FOLDER MINUTES [SEED]
 
 Ends with 0 where the program still answers at the end, quits with code 0, and OpenGL has reported no error. Prints what
-it was given (a line each thousand inputs) and its memory, so that growth shows. The last inputs are printed after a
-failure; the same seed gives the same inputs, as far as times allow.
+it was given (a line each thousand inputs, or five minutes) and its memory, so that growth shows. The last inputs are
+printed after a failure; the same seed gives the same inputs, as far as times allow.
 """
 import collections
 import pathlib
@@ -166,7 +166,7 @@ def quit_slowly(window):
 def run(folder, minutes, seed):
     window = Window(Display(), folder, Given.source / "data/cornell.glb")
     person = Person(window, seed)
-    end, next_line = time.monotonic() + 60.0 * minutes, 0
+    end, next_line, next_time = time.monotonic() + 60.0 * minutes, 0, 0.0
     try:
         while time.monotonic() < end:
             person.act()
@@ -176,12 +176,12 @@ def run(folder, minutes, seed):
             if count % 100 == 0:
                 person.keep_quick()
                 clean(folder)
-            if count >= next_line:
+            if count >= next_line or time.monotonic() >= next_time:
                 window.read()
                 frames = next((e["frames"] for e in reversed(window.events) if e["event"] == "frame"), 0)
                 del window.events[:-200]
                 print(f"{count} inputs, {frames} frames, {resident_mib(window):.0f} MiB", flush=True)
-                next_line = count + 1000
+                next_line, next_time = count + 1000, time.monotonic() + 300.0
         errors = quit_slowly(window)
         print(f"seed {seed}, {minutes} minutes, {dict(person.done)}, OpenGL errors: {errors}")
         return 1 if errors else 0

@@ -354,6 +354,14 @@ class Drop(WindowCase):
         window.tool("keyup", "shift")
         self.assertEqual(window.quit(), 0)
 
+    def test_outlives_what_something_is_dragged_from(self):
+        window = self.window(scene("cornell"))
+        self.assertEqual(window.hand("vanish").returncode, 0)
+        mark = window.mark()
+        self.assertEqual(window.hand("drop", self.room).returncode, 0)
+        window.wait("frame", lambda e: e["triangles"] == 4, mark)
+        self.assertEqual(window.quit(), 0)
+
     def test_what_cannot_be_read_leaves_the_old_scene(self):
         window = self.window(scene("cornell"), "--exposure", "1")
         before, triangles = window.undisturbed(), window.last()["triangles"]

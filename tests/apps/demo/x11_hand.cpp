@@ -1,5 +1,6 @@
 // What a desktop does to a window of another program, where there is no desktop: for window_test.py.
 //   x11_hand WINDOW drop FILE...   drops files as a file manager does (XDND 5); exit code 1 where they are not taken
+//   x11_hand WINDOW vanish         drops something and is gone before it is answered
 //   x11_hand WINDOW minimise       and
 //   x11_hand WINDOW restore        as window managers do: WM_STATE of ICCCM 4.1.3.1, and unmapped
 //   x11_hand WINDOW blur           takes the keyboard away from all windows
@@ -28,6 +29,7 @@ class Hand {
   Hand(Display* display, Window target) : display_(display), target_(target) {}
 
   bool drop(const std::vector<std::filesystem::path>& files);
+  void vanish();
   void set_state(int state);
   void blur();
   bool write_picture();
@@ -36,6 +38,7 @@ class Hand {
   Atom atom(const char* name) { return XInternAtom(display_, name, False); }
   void send(const char* type, long a, long b, long c, long d);
   bool wait_for(const char* type, XClientMessageEvent& message);
+  void make_source();
   void give_files(const XSelectionRequestEvent& request);
 
   Display* display_;
@@ -101,19 +104,34 @@ bool Hand::wait_for(const char* type, XClientMessageEvent& message) {
   return false;
 }
 
-bool Hand::drop(const std::vector<std::filesystem::path>& files) {
-  for (const auto& file : files) uris_ += uri_of(file) + "\r\n";
+void Hand::make_source() {
   // A file manager's window: what is dragged from it does not take the keyboard from it.
-  const Window root = DefaultRootWindow(display_);
   XSetWindowAttributes attributes{};
   attributes.override_redirect = True;
-  source_ =
-      XCreateWindow(display_, root, 0, 0, 1, 1, 0, CopyFromParent, InputOnly, nullptr, CWOverrideRedirect, &attributes);
+  source_ = XCreateWindow(display_, DefaultRootWindow(display_), 0, 0, 1, 1, 0, CopyFromParent, InputOnly, nullptr,
+                          CWOverrideRedirect, &attributes);
+}
+
+/// All of it at once, from a window that is no more: whoever answers has an error for it.
+void Hand::vanish() {
+  make_source();
+  XSetSelectionOwner(display_, atom("XdndSelection"), source_, CurrentTime);
+  XDestroyWindow(display_, source_);
+  XSync(display_, False);
+  send("XdndEnter", XDND_VERSION << 24, long(atom("text/uri-list")), 0, 0);
+  send("XdndPosition", 0, 0, CurrentTime, long(atom("XdndActionCopy")));
+  send("XdndDrop", 0, CurrentTime, 0, 0);
+}
+
+bool Hand::drop(const std::vector<std::filesystem::path>& files) {
+  for (const auto& file : files) uris_ += uri_of(file) + "\r\n";
+  make_source();
   XMapRaised(display_, source_);
   XSync(display_, False);
   XSetInputFocus(display_, source_, RevertToPointerRoot, CurrentTime);
   XSetSelectionOwner(display_, atom("XdndSelection"), source_, CurrentTime);
 
+  const Window root = DefaultRootWindow(display_);
   int x = 0, y = 0;
   Window child = 0;
   XTranslateCoordinates(display_, target_, root, 20, 20, &x, &y, &child);
@@ -174,7 +192,8 @@ bool Hand::write_picture() {
 int main(int argc, char** argv) {
   Display* display = argc >= 3 ? XOpenDisplay(nullptr) : nullptr;
   if (display == nullptr) {
-    std::fprintf(stderr, "x11_hand WINDOW drop FILE... | minimise | restore | blur | picture, on an X display\n");
+    std::fprintf(stderr,
+                 "x11_hand WINDOW drop FILE... | vanish | minimise | restore | blur | picture, on an X display\n");
     return 2;
   }
   Hand hand(display, Window(std::stoul(argv[1])));
@@ -182,6 +201,8 @@ int main(int argc, char** argv) {
   bool done = true;
   if (what == "drop") {
     done = hand.drop({argv + 3, argv + argc});
+  } else if (what == "vanish") {
+    hand.vanish();
   } else if (what == "minimise" || what == "restore") {
     hand.set_state(what == "minimise" ? IconicState : NormalState);
   } else if (what == "blur") {
