@@ -4,7 +4,10 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/hash.h"
+#include "propagation/light_in/contact_light_cpu.h"
 #include "propagation/light_in/gather_steadied.h"
+#include "propagation/light_in/side_start_internal.h"
 #include "propagation/reachable_cells_internal.h"
 #include "propagation/side_loops.h"
 
@@ -14,6 +17,8 @@ namespace {
 
 constexpr int MOST_ITERATIONS = 64;
 constexpr double SETTLED = 1e-3;  // change of an iteration over what there is, mean over surfaces
+
+float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 int affordable_rays(size_t sides, int wanted) {
   return std::min(wanted, int(FinalGatherCpu::MOST_RAYS / std::max(sides, size_t(1))));
@@ -48,6 +53,7 @@ void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, 
     std::iota(every.begin(), every.end(), 0u);
     all_.trace(voxels, embree, every, 0, rays_of_all(count));
   }
+  lit_.clear();
   seen_ = seen;
   rays_of_seen_ = rays;
   seen_sides_.clear();
@@ -132,9 +138,78 @@ const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const
   return irradiance_;
 }
 
+void FinalGatherCpu::light_by_lamps(const VoxelGrid& voxels, const EmbreeScene& embree) {
+  std::vector<shared::PunctualLight> lamps;
+  for (const Light& lamp : embree.scene().lights) lamps.push_back(to_shared(lamp));
+  const bool same = !lit_.empty() && lamps.size() == lamps_.size() &&
+                    std::memcmp(lamps.data(), lamps_.data(), lamps.size() * sizeof(shared::PunctualLight)) == 0;
+  if (same) return;
+  lamps_ = std::move(lamps);
+  lit_.assign(voxels.side_count(), glm::vec3(0.0f));
+  if (lamps_.empty()) return;
+  for_each_side(lit_.size(), [&](size_t s) {
+    const shared::Side& side = voxels.sides()[s];
+    const SideStart start = start_of_side(voxels, embree, side);
+    lit_[s] = radiosity_by_lamps(embree, start.origin, side.normal, side.albedo, hash(std::uint32_t(s)));
+  });
+}
+
+FinalGatherCpu::Near FinalGatherCpu::near_light(const VoxelGrid& voxels, const EmbreeScene& embree) {
+  light_by_lamps(voxels, embree);
+  const size_t count = voxels.side_count();
+  Near near{std::vector<float>(count, 0.0f), std::vector<glm::vec3>(count, glm::vec3(0.0f))};
+  std::vector<glm::ivec3> places(count);
+  std::vector<glm::vec3> sent(count);
+  for_each_side(count, [&](size_t s) {
+    places[s] = shared::cell_coord(voxels.grid(), sides_[s].cell);
+    sent[s] = radiosity_[s] + lit_[s];
+  });
+  /// Of one side, by these rays of its.
+  struct Parts {
+    Gathered close, far;
+    glm::vec3 emitted{0.0f};  // far
+  };
+  const auto add = [&](size_t s, std::span<const GatherRows::Met> row, Parts& parts) {
+    for (const GatherRows::Met& met : row) {
+      const glm::vec3 away(met.side < 0 ? glm::ivec3(0) : places[size_t(met.side)] - places[s]);
+      const bool is_near = met.side >= 0 && glm::dot(away, away) <= float(NEAR_CELLS * NEAR_CELLS);
+      (is_near ? parts.close : parts.far).add({&met, 1}, sent);
+      if (!is_near && met.side >= 0) parts.emitted += sides_[size_t(met.side)].radiosity;
+    }
+  };
+  const auto keep_far = [&](size_t s, const Parts& parts) {
+    near.from_far[s] = (parts.far.sum + parts.emitted) / float(std::max(parts.close.rays + parts.far.rays, 1));
+  };
+  // Paths go on from surfaces beside those that are seen.
+  for_each_side(count, [&](size_t s) {
+    if (seen_[size_t(sides_[s].cell)]) return;
+    Parts parts;
+    add(s, all_.row(s), parts);
+    keep_far(s, parts);
+  });
+  std::vector<float> all(seen_sides_.size(), 0.0f);
+  for_each_side(seen_sides_.size(), [&](size_t i) {
+    const std::uint32_t s = seen_sides_[i];
+    Parts parts;
+    add(s, all_.row(s), parts);
+    if (more_.rays() > 0) add(s, more_.row(i), parts);
+    keep_far(s, parts);
+    const auto rays = float(std::max(parts.close.rays + parts.far.rays, 1));
+    near.irradiance[s] = level(parts.close.sum) / rays;
+    all[i] = sides_[s].area_m2 * level(parts.close.sum + parts.far.sum) / rays;
+  });
+  double sum = 0.0, area = 0.0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    sum += double(all[i]);
+    area += double(sides_[seen_sides_[i]].area_m2);
+  }
+  near.mean = area > 0.0 ? float(sum / area) : 0.0f;
+  return near;
+}
+
 size_t FinalGatherCpu::bytes() const {
   return all_.bytes() + more_.bytes() + sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 +
-         seen_sides_.capacity() * sizeof(std::uint32_t) +
+         lit_.capacity() * sizeof(glm::vec3) + seen_sides_.capacity() * sizeof(std::uint32_t) +
          (radiosity_.capacity() + received_.capacity()) * sizeof(glm::vec3) +
          irradiance_.capacity() * sizeof(glm::vec4);
 }
@@ -142,7 +217,7 @@ size_t FinalGatherCpu::bytes() const {
 size_t FinalGatherCpu::bytes_for(const Grid& grid, size_t sides, int rays) {
   if (cell_count(grid) > MOST_CELLS) return 0;
   const int all = rays_of_all(sides), more = std::max(affordable_rays(sides, rays) - all, 0);
-  const size_t a_side = sizeof(shared::Side) + sizeof(std::uint32_t) + 2 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
+  const size_t a_side = sizeof(shared::Side) + sizeof(std::uint32_t) + 3 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
   return sides * a_side + cell_count(grid) / 8 + sides * size_t(all + more) * sizeof(GatherRows::Met);
 }
 
