@@ -49,10 +49,10 @@ Scene room_with_lit_step() {
 
 class ContactsGl : public GlTest {
  protected:
-  static Rendered picture(const Scene& scene, const Camera& camera, int paths) {
+  static Rendered picture(const Scene& scene, const Camera& camera, int cells, int paths) {
     screen::FrameOptions o = picture_options("hybrid", SIZE, screen::LightPart::indirect);
     o.backend = screen::Backend::cpu;
-    o.of<VolumeOptions>().grid_cells = 24;
+    o.of<VolumeOptions>().grid_cells = cells;
     o.of<VolumeOptions>().gather_rays = 64;
     o.of<screen::ContactOptions>().paths = paths;
     screen::Frame frame(scene, o);
@@ -73,14 +73,14 @@ class ContactsGl : public GlTest {
     double without, with;
     size_t pixels;
   };
-  static Errors errors(const Scene& scene, const Camera& camera) {
+  static Errors errors(const Scene& scene, const Camera& camera, int cells) {
     PathTracerOptions o;
     o.size = SIZE;
     o.samples_per_pixel = 256;
     o.light = PathTracerOptions::Light::indirect;
     const ReferencePicture right = path_trace(scene, camera, o);
-    const Rendered with = picture(scene, camera, screen::ContactOptions().paths);
-    const Errors e{error(picture(scene, camera, 0).image, right), error(with.image, right),
+    const Rendered with = picture(scene, camera, cells, screen::ContactOptions().paths);
+    const Errors e{error(picture(scene, camera, cells, 0).image, right), error(with.image, right),
                    with.report.of<screen::VolumeReport>().contact_pixels};
     RecordProperty("error", std::to_string(100.0 * e.without) + " -> " + std::to_string(100.0 * e.with));
     RecordProperty("pixels", int(e.pixels));
@@ -90,18 +90,18 @@ class ContactsGl : public GlTest {
 
 TEST_F(ContactsGl, ASlotOverALampIsAsBrightAsItIs) {
   const Scene scene = room_with_slot();
-  const Errors e =
-      errors(scene, look_at_camera({0.7f, 1.6f, 0.6f}, {0.1f, 1.97f, 0.1f}, 0.7f, scene.bounds_min, scene.bounds_max));
+  const Errors e = errors(
+      scene, look_at_camera({0.7f, 1.6f, 0.6f}, {0.1f, 1.97f, 0.1f}, 0.7f, scene.bounds_min, scene.bounds_max), 40);
   EXPECT_GT(e.pixels, 50u);
-  EXPECT_LT(e.with, 0.6 * e.without);
+  EXPECT_LT(e.with, 0.5 * e.without);  // 50 % -> 17; in 24 cells no side shows what is in the slot, and nothing helps
 }
 
 TEST_F(ContactsGl, TheFootOfALitStepIsAsBrightAsItIs) {
   const Scene scene = room_with_lit_step();
-  const Errors e =
-      errors(scene, look_at_camera({-0.6f, 0.5f, 0.4f}, {0.0f, 0.05f, 0.0f}, 0.7f, scene.bounds_min, scene.bounds_max));
+  const Errors e = errors(
+      scene, look_at_camera({-0.6f, 0.5f, 0.4f}, {0.0f, 0.05f, 0.0f}, 0.7f, scene.bounds_min, scene.bounds_max), 24);
   EXPECT_GT(e.pixels, 50u);
-  EXPECT_LT(e.with, 0.7 * e.without);
+  EXPECT_LT(e.with, 0.5 * e.without);  // 55 % -> 19
 }
 
 // Where nothing is as bright, the picture is not touched.
@@ -111,7 +111,8 @@ TEST_F(ContactsGl, AnEvenlyLitRoomHasNone) {
   scene.lights = {spot({0.0f, 1.9f, 0.0f}, {0.0f, -1.0f, 0.0f}, 30.0f, 10.0f)};
   const Camera camera =
       look_at_camera({0.7f, 1.0f, 0.7f}, {-0.5f, 0.8f, -0.5f}, 1.2f, scene.bounds_min, scene.bounds_max);
-  const Rendered with = picture(scene, camera, screen::ContactOptions().paths), without = picture(scene, camera, 0);
+  const Rendered with = picture(scene, camera, 24, screen::ContactOptions().paths),
+                 without = picture(scene, camera, 24, 0);
   EXPECT_EQ(with.report.of<screen::VolumeReport>().contact_pixels, 0u);
   EXPECT_EQ(with.image.pixels, without.image.pixels);
 }
