@@ -4,7 +4,10 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/hash.h"
+#include "propagation/light_in/contact_light_cpu.h"
 #include "propagation/light_in/gather_steadied.h"
+#include "propagation/light_in/side_start_internal.h"
 #include "propagation/reachable_cells_internal.h"
 #include "propagation/side_loops.h"
 
@@ -14,6 +17,8 @@ namespace {
 
 constexpr int MOST_ITERATIONS = 64;
 constexpr double SETTLED = 1e-3;  // change of an iteration over what there is, mean over surfaces
+
+float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 int affordable_rays(size_t sides, int wanted) {
   return std::min(wanted, int(FinalGatherCpu::MOST_RAYS / std::max(sides, size_t(1))));
@@ -55,6 +60,7 @@ void FinalGatherCpu::follow(const VoxelGrid& voxels, const EmbreeScene& embree, 
     all_.trace(voxels, embree, aim, every, 0, rays_of_all(count));
     follow_passages(voxels, embree, aim);
   }
+  lit_.clear();
   seen_ = seen;
   rays_of_seen_ = rays;
   seen_sides_.clear();
@@ -160,10 +166,88 @@ const std::vector<glm::vec4>& FinalGatherCpu::run(const VoxelGrid& voxels, const
   return irradiance_;
 }
 
+void FinalGatherCpu::light_by_lamps(const VoxelGrid& voxels, const EmbreeScene& embree) {
+  std::vector<shared::PunctualLight> lamps;
+  for (const Light& lamp : embree.scene().lights) lamps.push_back(to_shared(lamp));
+  const bool same = !lit_.empty() && lamps.size() == lamps_.size() &&
+                    std::memcmp(lamps.data(), lamps_.data(), lamps.size() * sizeof(shared::PunctualLight)) == 0;
+  if (same) return;
+  lamps_ = std::move(lamps);
+  lit_.assign(voxels.side_count(), glm::vec3(0.0f));
+  if (lamps_.empty()) return;
+  for_each_side(lit_.size(), [&](size_t s) {
+    const shared::Side& side = voxels.sides()[s];
+    const SideStart start = start_of_side(voxels, embree, side);
+    lit_[s] = radiosity_by_lamps(embree, start.origin, side.normal, side.albedo, hash(std::uint32_t(s)));
+  });
+}
+
+FinalGatherCpu::Near FinalGatherCpu::near_light(const VoxelGrid& voxels, const EmbreeScene& embree) {
+  light_by_lamps(voxels, embree);
+  const size_t count = voxels.side_count();
+  Near near{std::vector<float>(count, 0.0f), std::vector<glm::vec3>(count, glm::vec3(0.0f))};
+  std::vector<glm::ivec3> places(count);
+  std::vector<glm::vec3> sent(count);
+  for_each_side(count, [&](size_t s) {
+    places[s] = shared::cell_coord(voxels.grid(), sides_[s].cell);
+    sent[s] = radiosity_[s] + lit_[s];
+  });
+  /// Of one side, by these rays of its.
+  struct Parts {
+    Gathered close, far;
+    glm::vec3 emitted{0.0f}, emitted_through{0.0f};  // far, and behind passages
+
+    int rays() const { return std::max(close.rays + far.rays, 1); }
+    glm::vec3 through(glm::vec3 sum) const { return sum / float(std::max(far.rays_through, 1)); }
+  };
+  const auto add = [&](size_t s, const GatherRows::Row& row, Parts& parts) {
+    parts.far.add({{}, row.through}, sent);
+    for (const GatherRows::Through& t : row.through) {
+      if (t.met.side >= 0) parts.emitted_through += t.weight * sides_[size_t(t.met.side)].radiosity;
+    }
+    for (const GatherRows::Met& met : row.met) {
+      const glm::vec3 away(met.side < 0 ? glm::ivec3(0) : places[size_t(met.side)] - places[s]);
+      const bool is_near = met.side >= 0 && glm::dot(away, away) <= float(NEAR_CELLS * NEAR_CELLS);
+      (is_near ? parts.close : parts.far).add({{&met, 1}, {}}, sent);
+      if (!is_near && met.side >= 0) parts.emitted += sides_[size_t(met.side)].radiosity;
+    }
+  };
+  const auto keep_far = [&](size_t s, const Parts& parts) {
+    near.from_far[s] = (parts.far.sum + parts.emitted) / float(parts.rays()) +
+                       parts.through(parts.far.sum_through + parts.emitted_through);
+  };
+  // Paths go on from surfaces beside those that are seen.
+  for_each_side(count, [&](size_t s) {
+    if (seen_[size_t(sides_[s].cell)]) return;
+    Parts parts;
+    add(s, all_.row(s), parts);
+    keep_far(s, parts);
+  });
+  std::vector<float> all(seen_sides_.size(), 0.0f);
+  for_each_side(seen_sides_.size(), [&](size_t i) {
+    const std::uint32_t s = seen_sides_[i];
+    Parts parts;
+    add(s, all_.row(s), parts);
+    if (more_.rays() > 0) add(s, more_.row(i), parts);
+    keep_far(s, parts);
+    const auto rays = float(parts.rays());
+    near.irradiance[s] = level(parts.close.sum) / rays;
+    all[i] = sides_[s].area_m2 *
+             (level(parts.close.sum + parts.far.sum) / rays + level(parts.through(parts.far.sum_through)));
+  });
+  double sum = 0.0, area = 0.0;
+  for (size_t i = 0; i < all.size(); ++i) {
+    sum += double(all[i]);
+    area += double(sides_[seen_sides_[i]].area_m2);
+  }
+  near.mean = area > 0.0 ? float(sum / area) : 0.0f;
+  return near;
+}
+
 size_t FinalGatherCpu::bytes() const {
   return all_.bytes() + more_.bytes() + of_beside_.bytes() + beside_.capacity() * sizeof(std::uint32_t) +
-         row_beside_.capacity() * sizeof(std::int32_t) + sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 +
-         seen_sides_.capacity() * sizeof(std::uint32_t) +
+         row_beside_.capacity() * sizeof(std::int32_t) + lit_.capacity() * sizeof(glm::vec3) +
+         sides_.capacity() * sizeof(shared::Side) + seen_.size() / 8 + seen_sides_.capacity() * sizeof(std::uint32_t) +
          (radiosity_.capacity() + received_.capacity()) * sizeof(glm::vec3) +
          irradiance_.capacity() * sizeof(glm::vec4);
 }
@@ -172,7 +256,7 @@ size_t FinalGatherCpu::bytes_for(const Grid& grid, size_t sides, int rays) {
   if (cell_count(grid) > MOST_CELLS) return 0;
   const int all = rays_of_all(sides), more = std::max(affordable_rays(sides, rays) - all, 0);
   const size_t a_side = sizeof(shared::Side) + 2 * sizeof(std::uint32_t) + sizeof(std::int32_t) +
-                        2 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
+                        3 * sizeof(glm::vec3) + 3 * sizeof(glm::vec4);
   return sides * a_side + cell_count(grid) / 8 + GatherRows::most_bytes(sides, all) +
          GatherRows::most_bytes(sides, more) + GatherRows::most_bytes(sides, 2);
 }

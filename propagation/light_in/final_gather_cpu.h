@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/light.h"
 #include "core/visibility/embree_scene.h"
 #include "propagation/bounces_cpu.h"
 #include "propagation/light_in/gather_rows_cpu.h"
@@ -46,6 +47,19 @@ class FinalGatherCpu {
   const std::vector<glm::vec4>& run(const VoxelGrid& voxels, const EmbreeScene& embree,
                                     std::span<const PassageFace> passages, const Sent& sent,
                                     std::span<const glm::vec4> volume, const std::vector<bool>& seen, int rays);
+  /// Of the last run(), by side: what it sends of Sent::reflected and what comes round [W m^-2].
+  std::span<const glm::vec3> radiosity() const { return radiosity_; }
+
+  /// What sides that pixels read receive from what is near, by their rays, with lamps' light on it [W m^-2, mean over
+  /// red, green, blue]: where it is much, cells are too coarse (light_in/contact_light_cpu.h).
+  struct Near {
+    std::vector<float> irradiance;    // by side; 0 of the others
+    std::vector<glm::vec3> from_far;  // by side: what the rest of the rays bring, with what is emitted there
+    float mean = 0.0f;                // of all that is not emitted, by area
+  };
+  /// Of the last run(). Cost: with lamps, a shadow ray for each side when the scene or its lamps have changed.
+  Near near_light(const VoxelGrid& voxels, const EmbreeScene& embree);
+
   const Report& report() const { return report_; }
   size_t bytes() const;
   /// What bytes() comes to at most.
@@ -58,6 +72,7 @@ class FinalGatherCpu {
   std::vector<glm::vec3> radiosity_of(const VoxelGrid& voxels, const Sent& sent) const;
   Gathered gathered(size_t side, std::span<const glm::vec3> radiosity) const;
   void iterate(const VoxelGrid& voxels, std::span<const glm::vec3> own);
+  void light_by_lamps(const VoxelGrid& voxels, const EmbreeScene& embree);
 
   std::vector<shared::Side> sides_;  // that rows are of
   std::vector<bool> seen_;
@@ -67,6 +82,8 @@ class FinalGatherCpu {
   std::vector<std::int32_t> row_beside_;  // by side: its place there, or -1
   GatherRows all_, more_, of_beside_;     // more_: of seen_sides_
   std::vector<glm::vec3> radiosity_, received_;
+  std::vector<shared::PunctualLight> lamps_;  // that lit_ is of
+  std::vector<glm::vec3> lit_;                // by side: radiosity by lamps alone; empty: not known
   std::vector<glm::vec4> irradiance_;
   Report report_;
 };

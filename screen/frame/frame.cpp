@@ -108,6 +108,7 @@ void Frame::render(const Camera& camera, gl::PassTimer& timer) {
       for (const Step& any : steps_) any.stage->lights_ready(frame, timer);
       lights_ready = true;
     }
+    frame.earlier = layers_;
     step.stage->run(frame, timer);
     check_layers(step.plan, frame.layers);
     layers_.insert(layers_.begin(), frame.layers.begin(), frame.layers.end());

@@ -1,6 +1,7 @@
 #pragma once
 #include <cassert>
 #include <map>
+#include <span>
 #include <typeindex>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct FrameData {
   float scene_diagonal_m;
   const SkySeen* sky = nullptr;  // what is seen where there is no surface; null: nothing
   int sample = 0;  // of the pictures that are averaged: what stages choose by chance (core/sample_sequence.h)
-  std::vector<RadianceLayer> layers = {};
+  std::vector<RadianceLayer> layers = {};       // of the stage that runs
+  std::span<const RadianceLayer> earlier = {};  // of the stages before it
   Products products = {};
 
   template <class T>

@@ -8,6 +8,7 @@
 #include "propagation/volume_options.h"
 #include "screen/base/gbuffer.h"
 #include "screen/base/reflective_shadow_map.h"
+#include "screen/bounces/volume/contacts.h"
 #include "screen/bounces/volume/reflected_flux_gl.h"
 
 namespace volgi::screen {
@@ -21,6 +22,7 @@ struct VolumeReport {
   size_t pocket_cells = 0;  // voxel/white_pockets.h
   BounceReport bounces;
   FinalGatherCpu::Report gather;  // VolumeOptions::gather_rays
+  size_t contact_pixels = 0;      // Contacts
   glm::vec3 injected{0.0f};       // flux that lit and emissive surfaces send [W]
   glm::vec3 lost{0.0f};           // and what found no side, or looks out of the grid at its rim [W]
   size_t memory_bytes = 0;
@@ -39,6 +41,9 @@ class FrameVolume {
   /// @param first_bounce  what a volume of VolumeOptions::Source::first_bounce starts from, else null.
   virtual void run(const gl::SceneBuffers& buffers, const ReflectiveShadowMap& maps, const GBuffer& gbuffer,
                    const Camera& camera, const FirstBounce* first_bounce, gl::PassTimer& timer) = 0;
+  /// After run(), where indirect() is one of the picture's layers: it gets what all of them lack beside surfaces that
+  /// are brightly lit and nearer than cells are large (Contacts), where there are rays for it.
+  virtual void add_contacts(const ContactPicture& /*picture*/, gl::PassTimer& /*timer*/) {}
   /// The scene has changed in place, its materials, textures and images apart: the next run meets it as a new volume
   /// would. @return false if this volume cannot follow, as when the bounds make another grid: make a new one then.
   virtual bool follow_scene() { return false; }

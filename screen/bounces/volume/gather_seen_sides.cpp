@@ -37,13 +37,20 @@ const SideIrradiance* GatherSeenSides::run(const VolumeCpu& volume, const Embree
   if (!ran_) return nullptr;
   const auto scope = timer.scope(name);
   irradiance_.direct = volume.irradiance().direct;
+  positions_ = positions_of(gbuffer);
   irradiance_.indirect = gather_.run(voxels, embree, volume.passages(), sent_by(volume), volume.irradiance().indirect,
-                                     cells_seen(voxels.grid(), positions_of(gbuffer)), volume.options().gather_rays);
+                                     cells_seen(voxels.grid(), positions_), volume.options().gather_rays);
   return &irradiance_;
 }
 
+void GatherSeenSides::run_contacts(const VolumeCpu& volume, const EmbreeScene& embree, const ContactPicture& picture,
+                                   const gl::Texture& into, gl::PassTimer& timer) {
+  if (ran_) contacts_.run(volume.voxels(), embree, gather_, picture, positions_, into, timer);
+}
+
 size_t GatherSeenSides::bytes() const {
-  return gather_.bytes() + (irradiance_.direct.size() + irradiance_.indirect.size()) * sizeof(glm::vec4);
+  return gather_.bytes() +
+         (irradiance_.direct.size() + irradiance_.indirect.size() + positions_.size()) * sizeof(glm::vec4);
 }
 
 bool gathers_seen_sides(const VolumeOptions& options) {

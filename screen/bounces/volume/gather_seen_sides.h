@@ -5,6 +5,7 @@
 #include "propagation/light_in/final_gather_cpu.h"
 #include "propagation/volume_cpu.h"
 #include "screen/base/gbuffer.h"
+#include "screen/bounces/volume/contacts.h"
 
 namespace volgi::screen {
 
@@ -17,12 +18,18 @@ class GatherSeenSides {
   /// @param volume  after irradiate(). @return null where nothing is to be gathered (gathers_seen_sides()).
   const SideIrradiance* run(const VolumeCpu& volume, const EmbreeScene& embree, const GBuffer& gbuffer,
                             gl::PassTimer& timer);
+  /// After run(), where it has gathered: Contacts.
+  void run_contacts(const VolumeCpu& volume, const EmbreeScene& embree, const ContactPicture& picture,
+                    const gl::Texture& into, gl::PassTimer& timer);
   FinalGatherCpu::Report report() const { return ran_ ? gather_.report() : FinalGatherCpu::Report{}; }
+  size_t contact_pixels() const { return ran_ ? contacts_.pixels() : 0; }
   size_t bytes() const;
 
  private:
   FinalGatherCpu gather_;
   SideIrradiance irradiance_;
+  std::vector<glm::vec4> positions_;  // of pixels
+  Contacts contacts_;
   bool ran_ = false;
 };
 

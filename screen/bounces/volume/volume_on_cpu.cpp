@@ -194,6 +194,10 @@ class SidesOnCpu : public FrameVolume {
                 first_bounce != nullptr ? first_bounce->smooth : nullptr, timer);
   }
   bool first_is_apart() const override { return options_.bounces.has_value(); }
+  void add_contacts(const ContactPicture& picture, gl::PassTimer& timer) override {
+    if (gathered_ != nullptr && after_first_bounce())
+      seen_sides_.run_contacts(volume_, *embree_, picture, gather_.indirect(), timer);
+  }
   bool follow_scene() override {
     if (!follow(scene_, options_, volume_)) return false;
     look_at_geometry();
@@ -243,6 +247,7 @@ class SidesOnCpu : public FrameVolume {
                      indirect_.bytes() + punctual_flux_.bytes() + emitted_flux_.bytes() + but_last_.bytes() +
                      radiance_.bytes() + gather_.bytes() + seen_sides_.bytes();
     r.gather = seen_sides_.report();
+    r.contact_pixels = seen_sides_.contact_pixels();
     return r;
   }
 
@@ -392,7 +397,10 @@ size_t volume_bytes_on_cpu(const Scene& scene, const VolumeOptions& options, glm
   } else {
     bytes += bytes_expected_cpu(scene, grid, options, expected);
   }
-  if (gathers_seen_sides(options)) bytes += FinalGatherCpu::bytes_for(grid, expected.sides, options.gather_rays);
+  if (gathers_seen_sides(options)) {
+    bytes += FinalGatherCpu::bytes_for(grid, expected.sides, options.gather_rays);
+    bytes += sizeof(glm::vec4) * size_t(size.x) * size_t(size.y);
+  }
   if (carries_sides(options.scheme.scheme) && !fits) return bytes + VolumeGather::bytes_for(size);
   if (carries_sides(options.scheme.scheme))
     return bytes + 2 * with_headroom(sizeof(glm::vec4) * expected.sides) + VolumeGather::bytes_for(size);

@@ -65,6 +65,12 @@ constexpr Parameter PARAMETERS[] = {
          "and "
          "one rank; 0: none"},
         {0, 1024}, [](VolumeOptions& o) -> auto& { return o.gather_rays; }),
+    number<ContactOptions>(
+        {"contacts.paths", "",
+         "hybrid with sides.gather: of a picture at most, where what is brightly lit is nearer than cells are large; "
+         "0: "
+         "none"},
+        {0, 1 << 26}, [](ContactOptions& o) -> auto& { return o.paths; }),
     yes_no<VolumeOptions>(
         {"solver.warm", "", "starts from the last frame's answer"},
         [](VolumeOptions& o) -> auto& { return o.warm_start; }),
@@ -148,6 +154,7 @@ void add_figures(const VolumeReport& v, FrameReport& report) {
   report.add("gather.rays", double(v.gather.rays),
              v.gather.rays == 0 ? std::string() : fmt::format("{} sides gathered by rays", v.gather.seen_sides));
   report.add("gather.iterations", double(v.gather.iterations));
+  report.add("contacts.pixels", double(v.contact_pixels));
   report.add("converged", v.bounces.converged);
   report.add("conservative_coarse", v.coarse_start);
   report.add("backend", std::string(v.on_gpu ? "gpu" : "cpu"),
@@ -164,6 +171,7 @@ class VolumeStage : public Stage {
       : scene_(context.scene),
         size_(context.options.size),
         options_(volume_options(context.options)),
+        contacts_(context.options.of<ContactOptions>()),
         on_gpu_(runs_on_gpu(context.options.backend)),
         after_first_bounce_(source == VolumeOptions::Source::first_bounce),
         takes_sky_(after_first_bounce_ && !sky_goes_by_lights(context.options)) {
@@ -197,6 +205,7 @@ class VolumeStage : public Stage {
       } else {
         frame.layers.push_back({&volume_->indirect(), first_paths | later});
       }
+      add_contacts(frame, timer);
       return;
     }
     volume_->run(frame.triangles, frame.shadow_maps, frame.gbuffer, frame.camera, nullptr, timer);
@@ -236,6 +245,23 @@ class VolumeStage : public Stage {
   void make() {
     volume_ = on_gpu_ ? make_volume_on_gpu(scene_, options_, size_) : make_volume_on_cpu(scene_, options_, size_);
   }
+  /// Where the picture shows all of the indirect light, no part of it is near or far alone, and none comes from a sky.
+  void add_contacts(const FrameData& frame, gl::PassTimer& timer) {
+    const LightPaths there = paths_in(scene_), indirect = INDIRECT_PATHS & there;
+    if (contacts_.paths == 0 || there.meets(SKY_PATHS)) return;
+    LightPaths covered;
+    std::vector<const gl::Texture*> layers;
+    for (const std::span<const RadianceLayer> of : {frame.earlier, std::span<const RadianceLayer>(frame.layers)}) {
+      for (const RadianceLayer& layer : of) {
+        if (!layer.paths.meets(indirect)) continue;
+        if (layer.share != LightShare::whole) return;
+        layers.push_back(layer.texture);
+        covered = covered | layer.paths;
+      }
+    }
+    if (!(indirect - covered).empty()) return;
+    volume_->add_contacts({frame.gbuffer, frame.camera, layers, contacts_.paths, frame.sample}, timer);
+  }
   void warn_of_mixed_light(const StageContext& context) const {
     if (carries_sides(options_.scheme.scheme) || context.options.light != LightPart::indirect) return;
     if (!paths_in(scene_).contains(emission_direct)) return;
@@ -247,6 +273,7 @@ class VolumeStage : public Stage {
   const Scene& scene_;
   glm::ivec2 size_;
   VolumeOptions options_;
+  ContactOptions contacts_;
   bool on_gpu_, after_first_bounce_, takes_sky_;
   std::unique_ptr<FrameVolume> volume_;
 };
