@@ -132,7 +132,9 @@ TEST_F(BouncesCpuTest, PartialSums) {
       EXPECT_EQ(report.passes, report.orders);
       EXPECT_LE(power_error(bounces.received_direct(), exact.direct), 1e-6);
       EXPECT_LE(power_error(bounces.received_indirect(), exact.indirect), 1e-6);
-      if (n > 0) EXPECT_LE(power_error(bounces.received_but_last(), series(flux_, emission, n - 1).indirect), 1e-6);
+      if (n > 0) {
+        EXPECT_LE(power_error(bounces.received_but_last(), series(flux_, emission, n - 1).indirect), 1e-6);
+      }
     }
   }
 }

@@ -44,7 +44,7 @@ struct AfterFirstBounce {
     FinalGatherCpu::Sent sent;
     for (const shared::Side& side : volume.voxels().sides())
       sent.reflected.push_back(side.area_m2 * side.albedo * arrival);
-    rays.run(volume.voxels(), embree, sent, volume.irradiance().indirect,
+    rays.run(volume.voxels(), embree, volume.passages(), sent, volume.irradiance().indirect,
              std::vector<bool>(cell_count(volume.grid()), true), 64);
   }
 
