@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "propagation/light_in/automatic_grid.h"
+#include "propagation/light_in/final_gather_cpu.h"
 #include "reference/metrics.h"
 #include "reference/picture_files.h"
 #include "tests/hardcases/frame_case.h"
@@ -33,6 +34,7 @@ TEST_F(House, FarRoomNotInSoftware) {
   constexpr int size = 64;
   screen::FrameOptions o = picture_options("hybrid", {size, size}, screen::LightPart::indirect);
   o.of<VolumeOptions>().grid_cells = automatic_grid_cells(scene_);
+  o.of<VolumeOptions>().gather_rays = FinalGatherCpu::RAYS_OF_SEEN;  // as `volgi render` has it
   const Image image = render(context(), scene_, scene_.cameras.at(0), o).image;
   const double energy = mean_light(image) / mean_light(box_downsample(reference.color, size, size));
   expect_of_frame("house", "hybrid, the far room, energy", off_percent(energy), 10.0, 6.0,

@@ -153,6 +153,7 @@ TEST(FinalGather, SaysWhatMemoryItTakes) {
     g.volume.set_passages(narrow_passages(g.volume.voxels(), g.embree));
     EXPECT_EQ(g.volume.passages().empty(), !with_passage);
     g.gather();
+    g.gather_.near_light(g.volume.voxels(), g.embree);
     const auto said = double(FinalGatherCpu::bytes_for(g.volume.grid(), g.volume.voxels().side_count(), 64));
     EXPECT_LE(double(g.gather_.bytes()), said);
     EXPECT_GT(double(g.gather_.bytes()), (with_passage ? 0.8 : 0.7) * said);  // it has room for rays through passages
