@@ -39,7 +39,7 @@ std::vector<bool> spread(const Grid& grid, const std::vector<bool>& cells, int a
     if (!cells[i]) continue;
     const int at = shared::cell_coord(grid, int(i))[axis];
     const int last = std::min(reach, grid.cells[axis] - 1 - at);
-    for (int d = -std::min(reach, at); d <= last; ++d) out[size_t(int(i) + d * step)] = true;
+    for (int d = -std::min(reach, at); d <= last; ++d) out[size_t(std::ptrdiff_t(i) + std::ptrdiff_t(d) * step)] = true;
   }
   return out;
 }
