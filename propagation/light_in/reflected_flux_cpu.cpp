@@ -68,8 +68,8 @@ struct Carried {
 };
 
 /// Which senders have how many of the rays. Outside of a house the sun sends a hundred times of what it does in the one
-/// room with a window, and rays by flux would all leave the scene. So every fourth ray goes by flux, and of the others
-/// each sender has as many as it would of those that meet something.
+/// room with a window, and rays by flux would all leave the scene. So every fourth ray goes by flux, and if any of them
+/// meets nothing, of the others each sender has as many as it would of those that meet something.
 class Sending {
  public:
   static constexpr size_t EVERY = 4;
@@ -87,14 +87,12 @@ class Sending {
     if (std::equal(met.begin(), met.end(), sent.begin())) return;
     by_meeting_ = sums_of([&](size_t i) { return (double(met[i / GROUP]) + 1.0) / (double(sent[i / GROUP]) + 1.0); });
   }
-  /// Of its flux for each ray of a sender, by both ways to choose it (Veach's balance heuristic).
-  float part(size_t sender, size_t rays_by_flux, size_t others) const {
-    const double flux = double(weight_of(senders_[sender]));
-    double expected = double(rays_by_flux) * flux / by_flux_.back();
-    if (all_meet()) return float(1.0 / (expected + double(others) * flux / by_flux_.back()));
-    const double before = sender == 0 ? 0.0 : by_meeting_[sender - 1];
-    expected += double(others) * (by_meeting_[sender] - before) / by_meeting_.back();
-    return float(1.0 / expected);
+  /// Of a sender's flux for each of its rays. Those that others were learnt from do not count then: a sender is asked
+  /// more often where they met something, and would have less for it.
+  float part(size_t sender, size_t rays, size_t others) const {
+    const std::vector<double>& sums = all_meet() ? by_flux_ : by_meeting_;
+    const double chance = (sums[sender] - (sender == 0 ? 0.0 : sums[sender - 1])) / sums.back();
+    return float(1.0 / (double(all_meet() ? rays : others) * chance));
   }
 
  private:
@@ -138,12 +136,12 @@ void carry(const EmbreeScene& embree, const std::vector<Sender>& senders, int sa
   }
   sending.learn(met_of, sent_of);
   const auto take_part = [&](size_t j, Carried& c) {
-    c.flux = senders[c.sender].flux * sending.part(c.sender, first, others);
+    c.flux = senders[c.sender].flux * sending.part(c.sender, rays, others);
     take(j, c);
   };
   tbb::parallel_for(size_t(0), rays, [&](size_t j) {
     if (j % Sending::EVERY == 0) {
-      if (met[j / Sending::EVERY] != 0) take_part(j, carried[j / Sending::EVERY]);
+      if (sending.all_meet() && met[j / Sending::EVERY] != 0) take_part(j, carried[j / Sending::EVERY]);
       return;
     }
     // Where all have met something, as if there had been one way to choose.
