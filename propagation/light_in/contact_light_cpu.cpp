@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/hash.h"
+#include "core/level.h"
 #include "core/light.h"
 #include "core/surface.h"
 #include "propagation/light_in/cosine_direction_internal.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr int MOST_SURFACES = 32;  // of a path; 0.8^32 is 1e-3
 constexpr float FAR = std::numeric_limits<float>::infinity();
-
-float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 float random(std::uint32_t& state) {
   state = hash(state);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "core/hash.h"
+#include "core/level.h"
 #include "propagation/light_in/contact_light_cpu.h"
 #include "propagation/light_in/gather_steadied.h"
 #include "propagation/light_in/side_start_internal.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr int MOST_ITERATIONS = 64;
 constexpr double SETTLED = 1e-3;  // change of an iteration over what there is, mean over surfaces
-
-float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 int affordable_rays(size_t sides, int wanted) {
   return std::min(wanted, int(FinalGatherCpu::MOST_RAYS / std::max(sides, size_t(1))));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/hash.h"
+#include "core/level.h"
 #include "propagation/light_in/cosine_direction_internal.h"
 #include "propagation/light_in/side_start_internal.h"
 #include "voxel/side_search.h"
@@ -24,8 +25,6 @@ std::uint32_t packed(glm::vec3 tint) {
 glm::vec3 unpacked(std::uint32_t tint) { return glm::vec3(tint & 255u, tint >> 8 & 255u, tint >> 16) / 255.0f; }
 
 float square(float x) { return x * x; }
-
-float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 /// Of the sides that stand for the point, one by their weights: the mean over rays is that of all.
 std::int32_t one_of(const SidesOfPoint& found, std::uint32_t seed) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/level.h"
 #include "propagation/reachable_cells_internal.h"
 #include "propagation/side_loops.h"
 
@@ -12,8 +13,6 @@ constexpr int FIRST_SHIFT = 2, LAST_SHIFT = 5;  // regions of 4^3 ... 32^3 cells
 constexpr float VOLUME_ERROR = 0.05f;           // of its distribution, relative
 
 float square(float x) { return x * x; }
-
-float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 /// Sums over sides, by area.
 struct Sums {

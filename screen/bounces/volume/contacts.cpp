@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "core/hash.h"
+#include "core/level.h"
 #include "core/octahedral.h"
 #include "propagation/light_in/contact_light_cpu.h"
 
@@ -17,8 +18,6 @@ namespace {
 // Of the mean: near light from which on sides are too coarse. From 2 to 4 it is all one; at 1, corners count as well.
 constexpr float BRIGHT = 3.0f;
 constexpr int REACH = 3;  // cells that a side shows in: of a mean over 3^3 read between two
-
-float level(glm::vec3 v) { return (v.x + v.y + v.z) / 3.0f; }
 
 std::vector<glm::vec4> download(const gl::Texture& texture) {
   const std::vector<float> values = texture.download(4);
