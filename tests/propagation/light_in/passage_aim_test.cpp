@@ -45,7 +45,7 @@ double by_aim(const PassageAim::From& from, glm::vec3 point) {
 
 TEST(PassageAim, BothWaysToAskComeToTheSame) {
   std::vector<PassageFace> faces = bent_passage(0);
-  faces.push_back({{5, 5, 30}, 2, 1.0f, 1});  // another one, small
+  for (int k = 0; k < 24; ++k) faces.push_back({{16 + k % 4, 2 + k / 4, 30}, 2, 1.0f, 1});  // another one
   const PassageAim aim(faces);
   const glm::vec3 points[] = {{4.3f, 3.7f, 17.2f}, {15.0f, 0.5f, 20.5f}, {17.2f, 8.0f, 12.0f}};
   const glm::vec3 normals[] = {{1.0f, 0.0f, 0.0f}, glm::normalize(glm::vec3(0.3f, 0.9f, 0.2f)), {0.0f, 0.0f, 1.0f}};
